@@ -94,7 +94,7 @@ SolvedScene read_dimmed(const ExportArguments& arguments) {
 void run_scene(const ExportArguments& arguments) {
     const bool is_solved = is_solution_file(arguments.scene.path);
     const Scene scene = is_solved ? read_dimmed(arguments).scene : arguments.scene.load();
-    require_no_scene_files(scene, std::array<NamedFile, 1>{{{"--output", arguments.output}}});
+    refuse_overwriting(scene, std::array<NamedFile, 1>{{{"--output", arguments.output}}});
     ViewOptions view = arguments.view;
     if (arguments.up) view.up = V3f(*arguments.up);
     const SceneExport exported = export_scene(
@@ -194,7 +194,7 @@ void run(const ExportArguments& arguments, const CLI::App& command, int& exit_co
     require_distinct_files(input_files(arguments.scene, arguments.view), {&output, 1});
     if (is_scene_export(arguments.output)) return run_scene(arguments);
     const SolvedScene solved = read_dimmed(arguments);
-    require_no_scene_files(solved.scene, {&output, 1});
+    refuse_overwriting(solved.scene, {&output, 1});
     ExportOptions options;
     options.exposure = arguments.exposure.stops;
     if (arguments.exposure.relative) options.exposure += export_exposure(solved.scene, solved.solution);

@@ -244,7 +244,7 @@ void run(ProbeArguments& options, const CLI::App& command, int& exit_code) {
     // Read the solution, or read the scene and cut or divide it.
     const bool solved_before = is_solution_file(options.scene.path);
     SolvedScene solved = read_scene_or_solution(options.scene, options.dimming);
-    require_no_scene_files(solved.scene, outputs);
+    refuse_overwriting(solved.scene, outputs);
     std::vector<MeasuringGrid> grids = options.places.grids(solved.scene);
     const bool solves = !solved_before && uses_solution;
     const SolveOptions solve_options = options.solver.resolved({});

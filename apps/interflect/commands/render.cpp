@@ -33,6 +33,7 @@ namespace {
 
 /// Returns the requested view, else the first view of the scene, if any.
 std::optional<View> find_view(const Scene& scene, const RenderArguments& options) {
+    // A section is to scale in the rows above the legend
     if (options.section.is_given()) return options.section.view(scene, options.size.width, options.view_rows());
     const std::vector<View> requested = options.view.views(scene);
     if (!requested.empty()) return requested.front();
@@ -48,6 +49,7 @@ View make_overview(const Scene& scene, const RayCaster& ray_caster) {
     return overview(scene, ray_caster);
 }
 
+/// @throws InputError if the view is invalid, or too narrow for this number of pixels.
 void require_picture_of(const View& view, const Scene& scene, const RenderArguments& options) {
     require_picture(view, options.size.width, options.size.height, scene.origin);
 }
@@ -64,13 +66,14 @@ SolveOptions solve_options_for(const View& view, const RenderArguments& options)
 /// Solves without a time limit, and writes previews of the light so far.
 Solution solve_with_previews(const Scene& scene, const RayCaster& ray_caster, const View& view,
                              const SolveOptions& solve_options, const RenderArguments& options) {
-    // A preview takes about a second itself. With --progressive, a viewer waits for the first one.
+    // Drawing a preview takes about a second, so shorter runs draw none. With --progressive, a viewer waits for the
+    // first one, so it is drawn earlier.
     const double seconds_to_preview = options.progressive ? 0.25 : 1;
     const auto write_light = [&](const Solution& so_far) -> std::optional<Limits> {
         write_preview(scene, so_far, ray_caster, view, options, usual_reduction);
         return std::nullopt;  // the limits remain
     };
-    return run_solve(scene, ray_caster, solve_options, options.solver.memory, {},
+    return run_solve(scene, ray_caster, solve_options, options.solver.memory, /*checkpoints=*/{},
                      {.after = seconds_to_preview, .repeats = options.progressive, .use = write_light});
 }
 
@@ -87,7 +90,7 @@ void render_solution(const RenderArguments& options, PendingFile& output) {
     const bool is_solved = is_solution_file(options.scene.path);
     SolvedScene solved = read_scene_or_solution(options.scene, options.dimming);
     Scene& scene = solved.scene;
-    require_no_scene_files(scene, options.outputs());
+    refuse_overwriting(scene, options.outputs());
     const std::optional<View> found_view = find_view(scene, options);
     if (found_view) require_picture_of(*found_view, scene, options);
     if (!is_solved)
@@ -119,13 +122,16 @@ void render_solution(const RenderArguments& options, PendingFile& output) {
 /// Draws a scene by tracing paths without a solution. Reads only the scene of a solution file.
 void render_paths(const RenderArguments& options, PendingFile& output) {
     Scene scene = read_scene_or_solution(options.scene, options.dimming).scene;
-    require_no_scene_files(scene, options.outputs());
-    if (!is_solution_file(options.scene.path)) scene = options.mesh.cut(std::move(scene), options.scene.read);
+    refuse_overwriting(scene, options.outputs());
     const std::optional<View> found_view = find_view(scene, options);
+    if (found_view) require_picture_of(*found_view, scene, options);
+    // Without elements, patches need no mesh size: they are cut at contacts, but not divided
+    if (!is_solution_file(options.scene.path)) scene = options.mesh.cut(std::move(scene), options.scene.read);
     const RayCaster ray_caster = make_ray_caster(scene);
     const View view = found_view ? *found_view : make_overview(scene, ray_caster);
+    if (!found_view) require_picture_of(view, scene, options);
     warn_of_camera_outside(scene, ray_caster, view, options.aspect());
-    const Picture picture = draw_paths(scene, nullptr, ray_caster, view, options.picture, options);
+    const Picture picture = draw_paths(scene, /*solution=*/nullptr, ray_caster, view, options.picture, options);
     if (picture.is_black) warn_of_darkness(scene, ray_caster, view, options.aspect());
     write_picture(output, picture, view, scene, options.solver.seed(), options);
 }

@@ -84,7 +84,7 @@ void add_solve(CLI::App& app, int& exit_code) {
         options->checkpoints.require_writable();
         PendingFile output(options->output);
         Scene scene = options->scene.load();
-        require_no_scene_files(scene, outputs);
+        refuse_overwriting(scene, outputs);
         options->checkpoints.require_own_previous(scene);
         const std::vector<View> views = options->view.views(scene);
         const SolveOptions solve_options = options->solver.resolved(views);
@@ -141,7 +141,7 @@ void add_resume(CLI::App& app, int& exit_code) {
         Solver solver = Solver::open(options->input);
         if (options->limits.any()) solver.set_plan(options->limits.limits());
         const std::shared_ptr<const Scene> scene = solver.shared_scene();
-        require_no_scene_files(*scene, outputs);
+        refuse_overwriting(*scene, outputs);
         options->checkpoints.require_own_previous(*scene);
         StatsFile stats(options->threads, options->stats);
         const Solution solution = run_to_end(std::move(solver), options->checkpoints);

@@ -142,7 +142,7 @@ void run(ViewFactorArguments& arguments, const CLI::App& command, int& exit_code
     PendingFile output(arguments.output);
 
     const Scene scene = with_opaque_backs(arguments.scene.load(false));
-    require_no_scene_files(scene, outputs);
+    refuse_overwriting(scene, outputs);
     const std::vector<FaceGroup> groups = groups_of(scene, arguments);
     const RayCaster ray_caster = make_ray_caster(scene);
     stop_on_signal();

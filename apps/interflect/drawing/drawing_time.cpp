@@ -149,9 +149,10 @@ DrawingTime predict_time_of_elements(const Scene& scene, const Solution& solutio
             .finishing = writing_time * options.width * options.height};
 }
 
-double reserved_for(const DrawingTime& predicted, bool is_refined, double left) {
-    constexpr double share_of_refined = 3.0 / 4;
-    const double drawing = is_refined ? std::max(share_of_refined * left, predicted.drawing) : predicted.drawing;
+double reserved_for(const DrawingTime& predicted, bool takes_more_samples, double left) {
+    constexpr double share_of_samples = 3.0 / 4;
+    const double drawing =
+        takes_more_samples ? std::max(share_of_samples * left, predicted.drawing) : predicted.drawing;
     return std::min(largest_drawing_share * left, drawing + predicted.finishing);
 }
 

@@ -50,9 +50,11 @@ constexpr double largest_drawing_share = 0.9;
 
 /// Returns the part of the remaining time that is reserved for drawing [s]: the predicted time, at most
 /// largest_drawing_share.
-/// @param is_refined  Whether more samples improve the picture. It then receives at least three quarters of the
-///                    remaining time, its share of a run of an office without --time.
-/// @param left        Remaining time [s].
-double reserved_for(const DrawingTime& predicted, bool is_refined, double left);
+/// @param takes_more_samples  Whether the picture takes more samples than predicted while time is left. It then
+/// receives
+///                            at least three quarters of the remaining time, its share of a run of an office without
+///                            --time.
+/// @param left                Remaining time [s].
+double reserved_for(const DrawingTime& predicted, bool takes_more_samples, double left);
 
 }  // namespace interflect::command

@@ -21,8 +21,9 @@ constexpr double shortest_time = 1e-3;  // [s]; replaces times that are 0 or neg
 double time_limit_of_solving(const Solution& so_far, const DrawingPlan& plan, const RenderArguments& options) {
     const double left = options.seconds_left();
     const double spent = so_far.iterations.empty() ? 0 : so_far.iterations.back().seconds;
-    const bool is_refined = traces_paths(plan.picture.shading) && plan.reduction() == 1;
-    return spent + std::max(shortest_time, left - reserved_for(*plan.predicted, is_refined, left));
+    const bool is_preview = plan.reduction() > 1;
+    const bool takes_more_samples = traces_paths(plan.picture.shading) && !is_preview;
+    return spent + std::max(shortest_time, left - reserved_for(*plan.predicted, takes_more_samples, left));
 }
 
 void warn_of_reduction(int reduction) {
@@ -32,11 +33,13 @@ void warn_of_reduction(int reduction) {
         reduction, reduction);
 }
 
+/// @param left  Time that --time leaves for drawing [s].
 void warn_of_late_picture(double predicted, double left) {
     spdlog::warn("drawing takes about {}, but --time leaves {}: the picture will be late", duration(predicted),
                  duration(std::max(0.0, left)));
 }
 
+/// @param left  Time that --time leaves for drawing [s].
 void warn_of_smooth_shading(double predicted, double left) {
     spdlog::warn(
         "per-pixel shading takes about {}, but --time leaves {}: the light is drawn as with --shading "
@@ -44,8 +47,8 @@ void warn_of_smooth_shading(double predicted, double left) {
         duration(predicted), duration(std::max(0.0, left)));
 }
 
-/// Predicts the time of drawing from smaller pictures. If --time leaves less, plans a preview for hybrid shading, and
-/// smooth shading with few samples for others.
+/// Predicts the time of drawing from smaller pictures. If --time leaves less, hybrid shading becomes a preview, whose
+/// reduction is part of the prediction. Other shadings by paths become smooth shading with few samples.
 DrawingPlan plan_drawing(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
                          const RenderArguments& options) {
     DrawingPlan plan{options.picture};
@@ -57,14 +60,14 @@ DrawingPlan plan_drawing(const Scene& scene, const Solution& solution, const Ray
         plan.predicted =
             predict_time_of_paths(scene, solution, ray_caster, view, plan.picture, options.path.denoise, limit);
         const double predicted = plan.predicted->total();
-        const double left = options.seconds_left();
+        const double left_for_drawing = largest_drawing_share * options.seconds_left();  // less than before predicting
         if (plan.reduction() > 1) warn_of_reduction(plan.reduction());
-        if (predicted <= largest_drawing_share * left) return plan;
+        if (predicted <= left_for_drawing) return plan;
         if (plan.picture.shading == Shading::hybrid || needs_all_pixels) {
-            warn_of_late_picture(predicted, left);
+            warn_of_late_picture(predicted, left_for_drawing);
             return plan;
         }
-        warn_of_smooth_shading(predicted, left);
+        warn_of_smooth_shading(predicted, left_for_drawing);
         plan.picture = quick_options(plan.picture);
     }
     plan.predicted = predict_time_of_elements(scene, solution, ray_caster, view, plan.picture);
@@ -76,7 +79,7 @@ void limit_drawing(DrawingPlan& plan, const RenderArguments& options) {
     if (!plan.predicted || plan.reduction() > 1) return;
     PictureOptions& picture = plan.picture;
     picture.time = std::max(shortest_time, options.seconds_left() - plan.predicted->finishing);
-    // Without --samples, only the time limits the number of samples.
+    // The time limits the number of samples, and so does --samples if given
     if (!options.has_default_samples) picture.max_samples = picture.samples;
     if (picture.shading == Shading::hybrid)
         picture.samples = std::min(picture.samples, plan.predicted->samples_within(picture.time));
@@ -96,8 +99,9 @@ PlannedSolution solve_in_time(const Scene& scene, const RayCaster& ray_caster, c
         limits.time = time_limit_of_solving(so_far, plan, options);
         return limits;
     };
-    Solution solution = run_solve(scene, ray_caster, solve_options, options.solver.memory, {},
+    Solution solution = run_solve(scene, ray_caster, solve_options, options.solver.memory, /*checkpoints=*/{},
                                   {.after = seconds_to_plan, .use = plan_and_limit});
+    // A short run may end before it is planned. Other shadings than by paths are then drawn without a limit
     const bool ended_without_plan = !plan.predicted && !is_stop_requested();
     if (ended_without_plan && traces_paths(options.picture.shading))
         plan = plan_drawing(scene, solution, ray_caster, view, options);

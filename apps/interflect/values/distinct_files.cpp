@@ -49,7 +49,7 @@ void require_distinct_files(std::span<const NamedFile> inputs, std::span<const N
     }
 }
 
-void require_no_scene_files(const Scene& scene, std::span<const NamedFile> outputs) {
+void refuse_overwriting(const Scene& scene, std::span<const NamedFile> outputs) {
     for (const std::string& file : scene.files) {
         const NamedFile input{"a file of the scene", file};
         require_distinct_files({&input, 1}, outputs);

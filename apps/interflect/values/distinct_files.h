@@ -18,7 +18,7 @@ struct NamedFile {
 void require_distinct_files(std::span<const NamedFile> inputs, std::span<const NamedFile> outputs);
 
 /// @throws UsageError if an output is one of Scene::files.
-void require_no_scene_files(const Scene& scene, std::span<const NamedFile> outputs);
+void refuse_overwriting(const Scene& scene, std::span<const NamedFile> outputs);
 
 /// Returns the extension with ASCII letters in lower case.
 std::string lower_case_extension(const std::filesystem::path& path);

@@ -29,7 +29,7 @@ void share_light(const Scene& scene, const Solution* solution, const RayCaster& 
                 case LightOrder::Kind::picture:
                     if (order.is_known) known.value().is_interpolated = order.is_interpolated;
                     trace_picture(scene, ray_caster, received.start, order.options, monitor,
-                                  order.is_known ? &*known : nullptr, order.has_suns);
+                                  order.is_known ? &*known : nullptr, order.has_direct_sunlight);
                     break;
                 case LightOrder::Kind::instant_picture:
                     trace_instant_picture(scene, ray_caster, received.start, order.options, monitor);

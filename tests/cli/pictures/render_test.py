@@ -77,6 +77,13 @@ class Views(RenderTest):
         self.assertEqual(self.picture(source="room.h5"), floor)
         self.assertNotEqual(self.picture("--view", "door", source="room.h5"), floor)
 
+    def test_a_view_finer_than_the_directions_of_rays_is_refused_before_work(self):
+        for shading in ("hybrid", "path"):
+            narrow = (*VIEW, "--fov", "0.01", "--size", "32x32768", "--shading", shading)
+            said = self.interflect("render", "room.mgf", "-o", "out.png", *narrow, exit_code=BAD_INPUT).stderr
+            self.assertIn("finer than the directions of rays", said)
+            self.assertNotIn("info:", said)
+
     def test_without_any_view_there_is_an_overview_and_a_warning(self):
         (self.folder / "room.views.json").unlink()
         result = self.interflect("render", "room.mgf", "-o", "out.png", *SMALL, *SOLVED)

@@ -128,6 +128,18 @@ TEST(Lightmap, TooFineOnesAreRefusedBeforeTheyArePacked) {
     EXPECT_EQ(testing_support::refused_setting([&] { make_lightmap(scene, solution, options); }), "texels_per_metre");
 }
 
+/// The fractions of used and covered texels were 0 / 0.
+TEST(Lightmap, WithoutChartsUsesNoTexels) {
+    const Scene scene = turned_floor();
+    std::vector<LightmapChart> no_charts;
+    const PackCharts no_images = [](std::vector<LightmapChart>&) { return std::vector<Imath::V2i>(); };
+    const MoveTexels keep_places = [](std::size_t, std::span<TexelPlace>) {};
+    const BakedImages baked = bake_charts(no_charts, no_images, keep_places, scene, uniform(scene, 1), at(10));
+    EXPECT_TRUE(baked.images.empty());
+    EXPECT_EQ(baked.used, 0);
+    EXPECT_EQ(baked.covered, 0);
+}
+
 // A lightmap with texels smaller than the elements matches smooth shading, at borders too. The difference is the
 // error of bilinear interpolation between texels: about a tenth of the change over an element. Fails with charts that
 // are shifted by half a texel, mirrored or stretched.

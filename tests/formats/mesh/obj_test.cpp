@@ -97,16 +97,16 @@ TEST_P(ObjMaterial, IsMapped) {
 const float pi_f = static_cast<float>(pi);
 INSTANTIATE_TEST_SUITE_P(
     , ObjMaterial,
-    testing::Values(Finish{"Diffuse", "Ka 1 1 1\nKd .2 .4 .6\nNs 10\nillum 2\n", Rgb(.2f, .4f, .6f), Rgb(0), Rgb(0)},
-                    Finish{"Grey", "Kd .3\n", Rgb(.3f), Rgb(0), Rgb(0)},
-                    Finish{"Nothing", "", Rgb(.5f), Rgb(0), Rgb(0)},
-                    Finish{"Comments", "Kd .2 .4 .6 # blue\nKe 0 # off\nd .5 #half\n", Rgb(.1f, .2f, .3f), Rgb(0),
-                           Rgb(.5f)},
-                    Finish{"TooWhite", "Kd 1 1 1\n", Rgb(.99f), Rgb(0), Rgb(0)},
-                    Finish{"Emission", "Kd 0 0 0\nKe 10 20 30\n", Rgb(0), Rgb(10, 20, 30) * pi_f, Rgb(0)},
-                    Finish{"Dissolve", "Kd .4 .4 .4\nd .25\n", Rgb(.1f), Rgb(0), Rgb(.75f)},
-                    Finish{"Transparency", "Kd .4 .4 .4\nTr .75\n", Rgb(.1f), Rgb(0), Rgb(.75f)},
-                    Finish{"DissolveBeforeTransparency", "Kd .4 .4 .4\nTr 1\nd 1\n", Rgb(.4f), Rgb(0), Rgb(0)}),
+    testing::Values(
+        Finish{"Diffuse", "Ka 1 1 1\nKd .2 .4 .6\nNs 10\nillum 2\n", Rgb(.2f, .4f, .6f), Rgb(0), Rgb(0)},
+        Finish{"Grey", "Kd .3\n", Rgb(.3f), Rgb(0), Rgb(0)}, Finish{"Nothing", "", Rgb(.5f), Rgb(0), Rgb(0)},
+        Finish{"Comments", "Kd .2 .4 .6 # blue\nKe 0 # off\nd .5 #half\n", Rgb(.1f, .2f, .3f), Rgb(0), Rgb(.5f)},
+        Finish{"TooWhite", "Kd 1 1 1\n", Rgb(.99f), Rgb(0), Rgb(0)},
+        Finish{"Emission", "Kd 0 0 0\nKe 10 20 30\n", Rgb(0), Rgb(10, 20, 30) * pi_f, Rgb(0)},
+        Finish{"EmissionDissolves", "Kd 0 0 0\nKe 10 20 30\nd .25\n", Rgb(0), Rgb(2.5f, 5, 7.5f) * pi_f, Rgb(.75f)},
+        Finish{"Dissolve", "Kd .4 .4 .4\nd .25\n", Rgb(.1f), Rgb(0), Rgb(.75f)},
+        Finish{"Transparency", "Kd .4 .4 .4\nTr .75\n", Rgb(.1f), Rgb(0), Rgb(.75f)},
+        Finish{"DissolveBeforeTransparency", "Kd .4 .4 .4\nTr 1\nd 1\n", Rgb(.4f), Rgb(0), Rgb(0)}),
     testing::PrintToStringParamName());
 
 TEST(ObjNames, MayBeFollowedByComments) {

@@ -42,7 +42,7 @@ class MgfSkies : public testing::Test {
     Scene read(const std::string& entities) { return load_scene(folder.write("scene.mgf", any_face + entities)); }
     static const SkyDome& dome(const Scene& scene) { return std::get<SkyDome>(scene.luminaires.at(0).kind); }
     static double seen(const Scene& scene, const V3f& direction) {
-        return static_cast<double>(Skies(scene).seen(direction.normalized()).y);
+        return static_cast<double>(Skies(scene).radiance_with_suns(direction.normalized()).y);
     }
     void expect_fault(const std::string& line, const std::string& message) {
         try {
@@ -65,9 +65,9 @@ TEST_F(MgfSkies, OfTheCieHaveTheirIlluminanceColourAndGround) {
     EXPECT_EQ(scene.luminaires[0].name, "sky-dome-1");
     EXPECT_EQ(scene.objects[scene.luminaires[0].object], "outside");
     // Moon and Spencer: luminance of the zenith is 9 / (7 pi) of the illuminance.
-    EXPECT_NEAR(luminance(Skies(scene).seen({0, 0, 1})), 9000 * 9 / (7 * pi), 1);
-    EXPECT_NEAR(luminance(Skies(scene).seen({0, 1, 0.0001f})), 9000 * 3 / (7 * pi), 1);
-    EXPECT_NEAR(luminance(Skies(scene).seen({0, 0, -1})), 9000 * 0.2 / pi, 0.1);
+    EXPECT_NEAR(luminance(Skies(scene).radiance_with_suns({0, 0, 1})), 9000 * 9 / (7 * pi), 1);
+    EXPECT_NEAR(luminance(Skies(scene).radiance_with_suns({0, 1, 0.0001f})), 9000 * 3 / (7 * pi), 1);
+    EXPECT_NEAR(luminance(Skies(scene).radiance_with_suns({0, 0, -1})), 9000 * 0.2 / pi, 0.1);
 }
 
 TEST_F(MgfSkies, HaveTheirSunWhereTheVertexSays) {
@@ -93,7 +93,7 @@ TEST_F(MgfSkies, ByPerezBringTheirSun) {
     const auto& sun = std::get<DirectionalLight>(scene.luminaires[1].kind);
     EXPECT_NEAR(luminance(sun.irradiance), expected.sun_illuminance, 1);
     EXPECT_EQ(sun.diameter, sun_diameter);
-    EXPECT_NEAR(luminance(Skies(scene).seen({0, 0, -1})),
+    EXPECT_NEAR(luminance(Skies(scene).radiance_with_suns({0, 0, -1})),
                 0.2 / pi * (expected.sky_illuminance + 0.8 * expected.sun_illuminance), 1);
     EXPECT_EQ(read(sunlight + "light sky perez s 0 80\n").luminaires.size(), 1u) << "no sun without direct light";
 }

@@ -88,7 +88,7 @@ TEST_P(EverySky, IsSeenAsItIs) {
                     sine = std::sqrt(1 - cosine * cosine);
         const V3f d(sine * std::cos(turn), sine * std::sin(turn), cosine);
         const double expected = GetParam().radiance(V3d(d));
-        EXPECT_NEAR(skies.seen(d).x, expected, 1e-3 * expected + 1e-4) << d;
+        EXPECT_NEAR(skies.radiance_with_suns(d).x, expected, 1e-3 * expected + 1e-4) << d;
     }
     const View view{"up", {0, 0, 0}, {0.3, -0.4, 1.1}, {0, 1, 0}, 0.01f};
     const double expected = GetParam().radiance(V3d(0.3, -0.4, 1.1).normalized());
@@ -199,7 +199,7 @@ TEST(Sun, CausesItsIrradianceAndIsSeenAsADisc) {
     const double radiance = 90 / (pi * std::pow(std::sin(6 * pi / 180), 2));
     for (const double angle : {0.0, 3.0, 5.99, 6.01, 40.0, 180.0}) {
         const V3f d = frame.direction({0.3f, static_cast<float>(std::cos(angle * pi / 180))});
-        EXPECT_NEAR(skies.seen(d).x, angle < 6 ? radiance : 0, 1e-4 * radiance) << angle;
+        EXPECT_NEAR(skies.radiance_with_suns(d).x, angle < 6 ? radiance : 0, 1e-4 * radiance) << angle;
         EXPECT_EQ(skies.radiance(d), Rgb(0));
     }
 }

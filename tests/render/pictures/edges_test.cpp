@@ -106,10 +106,10 @@ INSTANTIATE_TEST_SUITE_P(OfBrightHalves, Edges,
 /// indirect light in the proportions of the other half. Seen to fail without either part; pictures of Edges have no
 /// indirect light.
 TEST(PixelStatistics, FirstHitsCorrectDirectAndIndirectLight) {
-    SampleBatch paths{.size = 4};
+    SampleBatch paths{.half_size = 4};
     paths.halves = {PathLight{.direct = RgbD(4), .indirect = RgbD(8), .predicted = RgbD(8)},
                     PathLight{.direct = RgbD(12), .indirect = RgbD(4), .predicted = RgbD(8)}};
-    SampleBatch first_hits{.size = 10};
+    SampleBatch first_hits{.half_size = 10};
     first_hits.halves.fill({.emitted = RgbD(5), .predicted = RgbD(30)});
     PixelStatistics pixel;
     pixel.add(paths, ErrorSource::halves);

@@ -220,5 +220,18 @@ TEST_P(EveryFlatMethod, ErrorFallsWithTheRaysAndIsReported) {
     EXPECT_GT(error(few, PointSet::sobol) / error(many, PointSet::sobol), 3.3);
 }
 
+/// Methods that improve a first estimate reported iteration 0 twice: after the initial mesh and after the estimate.
+TEST(Reports, AreNumberedInSequence) {
+    const Scene scene = furnished_room();
+    for (const char* name : {"hsrr", "wdrs", "hwdrs"}) {
+        SolveOptions options{.method = find_method(name)};
+        options.limits.rays = 20'000;
+        const Solution solution = solve(scene, RayCaster(scene), options);
+        ASSERT_GT(solution.iterations.size(), 1u) << name;
+        for (std::size_t i = 0; i < solution.iterations.size(); ++i)
+            EXPECT_EQ(solution.iterations[i].iteration, static_cast<int>(i)) << name;
+    }
+}
+
 }  // namespace
 }  // namespace interflect

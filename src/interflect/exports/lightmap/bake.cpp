@@ -25,9 +25,9 @@ namespace interflect::detail {
 
 namespace {
 
-/// Direct light is sampled until its noise is about 3% per texel. In a furnished room with a window, the filter reduced
-/// this noise to 0.5%. A noise of 6% left visible grain on the walls.
-constexpr DirectSampling texel_sampling{&DefaultSamples::texel, /*max_noise=*/0.03, /*needs_direct=*/false};
+/// Direct light is sampled until its noise is about 3% per texel. In a furnished room with a window, the denoiser of
+/// BakeOptions reduced this noise to 0.5%. A noise of 6% left visible grain on the walls.
+constexpr DirectSampling texel_sampling{&DefaultSamples::texel, /*max_noise=*/0.03, /*calls_direct=*/false};
 
 /// Returns the irradiance of a point, or the radiance that leaves it.
 Rgb texel_value(LightmapContent content, const Scene& scene, const BakedPoint& point, const Rgb& irradiance) {
@@ -74,7 +74,7 @@ class PointSearch {
 
 /// Pixel of an image of the lightmap.
 struct TexelPosition {
-    std::size_t page;
+    std::size_t page;  // index of the image
     int column, row;
 };
 
@@ -92,18 +92,23 @@ class LightmapTexels {
     /// @param places  Texels of the chart and its gutter, row by row.
     void add_chart(const LightmapChart& chart, std::span<const TexelPlace> places) {
         const int columns = chart.columns + 2 * options_.gutter;
-        const std::vector<std::size_t> copied = copied_texels(places, static_cast<std::size_t>(columns));
-        const bool is_hidden = std::all_of(copied.begin(), copied.end(), [](std::size_t i) { return i == no_texel; });
-        if (is_hidden) return add_hidden_chart(chart, places, columns);
+        const bool is_hidden =
+            std::none_of(places.begin(), places.end(), [](const TexelPlace& place) { return place.is_evaluated; });
+        if (is_hidden) {
+            add_hidden_chart(chart, places, columns);
+            return;
+        }
         PointGrid grid{columns, std::vector<std::uint32_t>(places.size(), none)};
         for (std::size_t i = 0; i < places.size(); ++i) {
             texels_inside_ += places[i].is_inside;
             if (!places[i].is_evaluated) continue;
             grid.points[i] = static_cast<std::uint32_t>(points_.size());
-            points_.push_back(places[i]);
+            const BakedPoint& point = places[i];
+            points_.push_back(point);
         }
+        const std::vector<std::size_t> evaluated = copied_texels(places, static_cast<std::size_t>(columns));
         for (std::size_t i = 0; i < places.size(); ++i)
-            texels_.push_back({position_in_image(chart, i, columns), grid.points[copied[i]]});
+            texels_.push_back({position_in_image(chart, i, columns), grid.points[evaluated[i]]});
         grids_.push_back(std::move(grid));
     }
     /// Assigns the nearest evaluated point in space to each texel of hidden charts. Requires that all charts are added.
@@ -138,6 +143,7 @@ class LightmapTexels {
         const int row = chart.top - options_.gutter + static_cast<int>(i) / columns;
         return {static_cast<std::size_t>(chart.page), column, row};
     }
+    /// Skips texels whose patch MoveTexels has cleared.
     void add_hidden_chart(const LightmapChart& chart, std::span<const TexelPlace> places, int columns) {
         for (std::size_t i = 0; i < places.size(); ++i)
             if (places[i].patch != none) hidden_texels_.push_back({position_in_image(chart, i, columns), places[i]});
@@ -166,12 +172,12 @@ void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Sol
         const auto fraction = [&](std::size_t i) { return static_cast<double>(i) / static_cast<double>(count); };
         const Monitor monitor = monitor_section(options.monitor, fraction(g), fraction(g + 1));
         baked.groups.push_back(baked.images);  // these images are black until all groups are evaluated
-        // The other ranks share the light of this group until end_shared_light()
+        // The other ranks make the same scene and solution, and share their light until end_shared_light()
         give_order(ranks, {.kind = LightOrder::Kind::group, .group = g});
         try {
             texels.evaluate(group.scene, BakedLight(group.scene, group.solution, options.bake, texel_sampling), monitor,
                             baked.groups.back());
-        } catch (const Stopped&) {
+        } catch (const Stopped&) {  // of all ranks; after another error, the caller must end them (Ranks::abort())
             end_shared_light(ranks);
             throw;
         }
@@ -201,6 +207,7 @@ double texels_of_images(std::span<const Imath::V2i> sizes) {
 
 /// Returns the memory for the light of one texel of a chart [bytes].
 double light_bytes(Shading shading) {
+    // Hybrid shading traces tiles of gauges, so it keeps no statistics of all texels
     if (shading == Shading::hybrid) return sizeof(SurfacePoint) + sizeof(Gauge) + sizeof(GaugeLight) + sizeof(Rgb);
     if (shading == Shading::gather)
         return path_bytes_per_pixel + sizeof(MeasuringPoint) + sizeof(Gauge) + sizeof(MeasuredIrradiance);
@@ -234,7 +241,7 @@ void require_lightmap_memory(const TexelCounts& texels, const ExportOptions& opt
 
 }  // namespace
 
-BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pack, const MoveTexels& move,
+BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pack, const MoveTexels& move_texels,
                         const Scene& scene, const Solution& solution, const ExportOptions& options) {
     const LightmapOptions& lightmap = *options.lightmap;
 
@@ -242,29 +249,30 @@ BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pa
     TexelCounts texel_counts;
     texel_counts.charts = texels_of_charts(charts, lightmap.gutter);
     texel_counts.images = texel_counts.charts;
-    require_lightmap_memory(texel_counts, options, solution.groups.size());
+    require_lightmap_memory(texel_counts, options, solution.group_names.size());
 
     const std::vector<Imath::V2i> sizes = pack(charts);
     texel_counts.images = texels_of_images(sizes);
-    require_lightmap_memory(texel_counts, options, solution.groups.size());
+    require_lightmap_memory(texel_counts, options, solution.group_names.size());
     BakedImages baked;
     for (const Imath::V2i& size : sizes) baked.images.emplace_back(size.x, size.y);
 
     LightmapTexels texels(lightmap);
     for (std::size_t i = 0; i < charts.size(); ++i) {
         std::vector<TexelPlace> places = places_of(charts[i], lightmap.gutter);
-        move(i, places);
+        move_texels(i, places);
         texels.add_chart(charts[i], places);
     }
     texels.assign_hidden_texels(scene);
 
     if (lightmap.groups)
         evaluate_groups(texels, scene, solution, options, baked);
-    else
+    else  // the other ranks already have this scene and solution
         texels.evaluate(scene, BakedLight(scene, solution, options.bake, texel_sampling), options.monitor,
                         baked.images);
-    baked.used = static_cast<double>(texels.count()) / texel_counts.images;
-    baked.covered = static_cast<double>(texels.count_inside()) / texel_counts.images;
+    const double all_texels = std::max(1.0, texel_counts.images);  // no division by 0 without charts
+    baked.used = static_cast<double>(texels.count()) / all_texels;
+    baked.covered = static_cast<double>(texels.count_inside()) / all_texels;
     return baked;
 }
 

@@ -22,8 +22,8 @@ struct BakedImages {
 using PackCharts = std::function<std::vector<Imath::V2i>(std::vector<LightmapChart>& charts)>;
 
 /// Moves the places of a chart's texels to patches of the solved scene. Clears TexelPlace::is_evaluated of hidden
-/// texels, which then copy the light of a neighbour. In charts without any visible texel, each copies the nearest
-/// evaluated texel in space.
+/// texels, which then copy the light of a neighbour. Clears the patch of texels where that scene has none. In charts
+/// without any visible texel, each copies the nearest evaluated texel in space.
 /// @param chart  Index of the chart.
 using MoveTexels = std::function<void(std::size_t chart, std::span<TexelPlace> places)>;
 
@@ -32,7 +32,7 @@ using MoveTexels = std::function<void(std::size_t chart, std::span<TexelPlace> p
 /// @param charts   Receive their positions in the images.
 /// @param options  Must include a lightmap.
 /// @throws InputError above LightmapOptions::max_bytes; Stopped
-BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pack, const MoveTexels& move,
+BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pack, const MoveTexels& move_texels,
                         const Scene& scene, const Solution& solution, const ExportOptions& options);
 
 }  // namespace interflect::detail

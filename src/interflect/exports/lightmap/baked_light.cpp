@@ -132,7 +132,7 @@ BakedLight::BakedLight(const Scene& scene, const Solution& solution, const BakeO
       known_{*solution.forest, solution.irradiance, /*is_interpolated=*/true} {
     if (options.shading == Shading::smooth) return;
     ray_caster_.emplace(scene);
-    if (options.shading == Shading::hybrid || sampling.needs_direct) traced_.emplace(scene, *ray_caster_);
+    if (options.shading == Shading::hybrid || sampling.calls_direct) traced_.emplace(scene, *ray_caster_);
 }
 
 std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, std::span<const PointGrid> grids,

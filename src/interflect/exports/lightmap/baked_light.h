@@ -27,7 +27,7 @@ struct BakedPoint {
 struct DirectSampling {
     LightUse use;       ///< Selects the default number of samples.
     double max_noise;   ///< Estimated relative error below which fewer samples suffice.
-    bool needs_direct;  ///< Whether BakedLight::direct() will be called.
+    bool calls_direct;  ///< Whether BakedLight::direct() will be called.
 };
 
 /// Grid of neighbouring points on a surface: their indices, row by row; `none` outside the surface.
@@ -48,7 +48,7 @@ class BakedLight {
     /// @return         One value per point [unit of H]. @throws Stopped
     std::vector<Rgb> irradiance(std::span<const BakedPoint> points, std::span<const PointGrid> grids, float spacing,
                                 const Monitor& monitor) const;
-    /// Returns the direct light of hybrid shading. Requires needs_direct and a shading other than smooth.
+    /// Returns the direct light of hybrid shading. Requires calls_direct and a shading other than smooth.
     std::vector<SampledIrradiance> direct(std::span<const BakedPoint> points, float spacing, int max_samples,
                                           const Monitor& monitor) const;
     /// Returns the interpolated irradiance of the solution (SmoothField).

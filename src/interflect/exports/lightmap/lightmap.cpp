@@ -15,8 +15,8 @@ void require_positive_densities(const LightmapOptions& options) {
     for (const auto& [pattern, density] : options.densities)
         if (density == 0)
             throw InputError(
-                fmt::format("lightmap: the density of '{}' is 0, which leaves surfaces out: this needs the "
-                            "scene's own glTF file",
+                fmt::format("lightmap: the density of '{}' is 0: only a lightmap in the scene's own glTF file can "
+                            "leave surfaces out",
                             pattern));
 }
 

@@ -278,7 +278,7 @@ VertexLight make_vertex_light(const Scene& scene, const Solution& solution, cons
     std::vector<bool> shown = shown_patches(scene, solution);
     if (options.bake.shading == Shading::smooth)
         return {solution.forest, ElementMesh(scene, *solution.forest, solution.irradiance), std::move(shown)};
-    constexpr DirectSampling vertex_sampling{&DefaultSamples::vertex, 1e-3, /*needs_direct=*/true};
+    constexpr DirectSampling vertex_sampling{&DefaultSamples::vertex, 1e-3, /*calls_direct=*/true};
     const BakedLight light(scene, solution, options.bake, vertex_sampling);
     constexpr double share_of_division = 0.4;  // rough share of the time, for progress reports
     Division division(scene, light, shown, mean_irradiance(solution, shown), options.vertices);

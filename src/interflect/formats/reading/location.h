@@ -17,16 +17,16 @@ namespace interflect::detail {
 /// Place of a fault, for messages.
 struct Location {
     const std::filesystem::path* file = nullptr;
-    std::int64_t line = 0;       ///< Number from 1; 0 for files without lines.
-    std::string_view part = {};  ///< Part of the file, such as "mesh 'chair'", or empty.
-    bool is_foreign = false;     ///< Whether another file refers to this one; messages do not quote such files.
+    std::int64_t line = 0;        ///< Number from 1; 0 for files without lines.
+    std::string_view part = {};   ///< Part of the file, such as "mesh 'chair'", or empty.
+    bool forbids_quotes = false;  ///< Whether messages hide the file's content, because another file refers to it.
 
     std::string text() const {
         if (!file) return {};
         if (line > 0) return fmt::format("{}:{}", file->string(), line);
         return part.empty() ? file->string() : fmt::format("{}: {}", file->string(), part);
     }
-    std::string shown(const std::string& message) const { return is_foreign ? without_quotes(message) : message; }
+    std::string shown(const std::string& message) const { return forbids_quotes ? without_quotes(message) : message; }
     /// @param setting  Fault::setting.
     InputError error(const std::string& message, const std::string& setting = {}) const {
         const std::string text = part.empty() ? shown(message) : fmt::format("{}: {}", part, shown(message));

@@ -44,7 +44,7 @@ Rgb Skies::sampled_radiance(const V3f& direction) const {
 
 Rgb Skies::radiance(const V3f& direction) const { return uniform_ + sampled_radiance(direction); }
 
-Rgb Skies::seen(const V3f& direction) const {
+Rgb Skies::radiance_with_suns(const V3f& direction) const {
     Rgb sum = radiance(direction);
     for (const Disc& disc : discs_)
         if (disc.towards.dot(direction) > 0 && disc.towards.cross(direction).length() < disc.sine) sum += disc.radiance;

@@ -15,7 +15,7 @@ class Skies {
     /// Returns the radiance without suns [cd/m^2 or W/(m^2 sr)]. @param direction  Unit length.
     Rgb radiance(const V3f& direction) const;
     /// Returns the radiance with the discs of suns.
-    Rgb seen(const V3f& direction) const;
+    Rgb radiance_with_suns(const V3f& direction) const;
 
     bool can_sample() const { return !sampled_.empty(); }
     struct Sample {

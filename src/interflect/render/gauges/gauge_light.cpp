@@ -58,7 +58,7 @@ class GaugeTile {
             if (const std::uint32_t present = pixels_[i].samples_of_half(); wanted[i] > present)
                 batches.push_back({.pixel = static_cast<std::uint32_t>(first_ + i),
                                    .first_index = present,
-                                   .size = wanted[i] - present});
+                                   .half_size = wanted[i] - present});
         integrator_.trace(batches);
         rays_ += integrator_.counts().rays;
         for (const SampleBatch& b : batches) pixels_[b.pixel - first_].add(b, ErrorSource::halves);

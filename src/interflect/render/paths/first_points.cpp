@@ -44,16 +44,16 @@ const FirstPoints::Group& FirstPoints::group_of(const Path& path) {
     const std::uint32_t batch = path.half_batch / 2;
     for (std::size_t i = groups_.size(); i > 0 && groups_[i - 1].batch == batch; --i)
         if (groups_[i - 1].patch == path.patch && groups_[i - 1].normal.dot(path.normal) >= same_cosine &&
-            (groups_[i - 1].position - path.lookup).length() <= groups_[i - 1].radius)
+            (groups_[i - 1].position - path.lookup_position).length() <= groups_[i - 1].radius)
             return groups_[i - 1];
-    Group& group = groups_.emplace_back(Group{batch, path.patch, path.normal, path.lookup});
+    Group& group = groups_.emplace_back(Group{batch, path.patch, path.normal, path.lookup_position});
     const IndirectField* const field = plan_.hybrid->field;
     if (!field) {
         group.lookup.is_found = true;
         group.radius = std::numeric_limits<float>::infinity();
         return group;
     }
-    const auto found = field->at(path.lookup, path.normal, path.patch);
+    const auto found = field->at(path.lookup_position, path.normal, path.patch);
     if (!found) return group;
     group.lookup.is_found = true;
     group.irradiance = found->irradiance;
@@ -76,9 +76,9 @@ FirstPoints::Lookup FirstPoints::add_indirect(const Path& path, PathLight& light
 std::uint32_t FirstPoints::add(const Path& path, const LightSample& numbers) {
     Point& point = points_.emplace_back(Point{path.half_batch, path.normal, path.throughput});
     for (const SourceKind kind : source_kinds)
-        if (plan_.scene.sources.useful_rays(kind, 1) > 0 && plan_.scene.unoccluded.has(kind))
+        if (plan_.scene.sources.useful_rays(kind, 1) > 0 && plan_.scene.unoccluded_light.has(kind))
             point.sources[static_cast<std::size_t>(kind)].unoccluded =
-                plan_.scene.unoccluded.at(kind, path.position, path.normal, numbers.u, numbers.v);
+                plan_.scene.unoccluded_light.at(kind, path.position, path.normal, numbers.u, numbers.v);
     return static_cast<std::uint32_t>(points_.size() - 1);
 }
 
@@ -103,7 +103,7 @@ void FirstPoints::add_direct(std::span<PathLight> halves) const {
                     similar.visible += other.visible;
                     ++similar.points;
                 }
-                const bool is_exact = plan_.scene.unoccluded.is_exact(source_kinds[k]);
+                const bool is_exact = plan_.scene.unoccluded_light.is_exact(source_kinds[k]);
                 const Rgb c = coefficient(similar, all, is_exact ? source.unoccluded : Rgb(0));
                 const Rgb irradiance = c * source.unoccluded + (source.visible - c * source.sampled);
                 halves[point.half_batch].direct += RgbD(point.throughput / std::numbers::pi_v<float> * irradiance);

@@ -231,7 +231,7 @@ std::vector<SampleBatch> IndirectField::next_groups(std::span<const std::uint32_
     for (const std::uint32_t i : chosen)
         for (std::uint32_t group = 0; group < groups; ++group)
             batches.push_back(
-                {.pixel = i, .first_index = (records_[i].gathered.groups + group) * half_size, .size = half_size});
+                {.pixel = i, .first_index = (records_[i].gathered.groups + group) * half_size, .half_size = half_size});
     return batches;
 }
 

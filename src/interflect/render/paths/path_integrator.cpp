@@ -79,16 +79,16 @@ void PathIntegrator::start_at_camera(std::span<const SampleBatch> batches) {
     Path path;
     for (std::uint32_t h = 0; h < keys_.size(); ++h) {
         const SampleBatch& batch = batches[h / 2];
-        fill_points(PointSet::sobol, keys_[h], batch.first_index, batch.size, points);
+        fill_points(PointSet::sobol, keys_[h], batch.first_index, batch.half_size, points);
         const auto& x_in_pixel = points.coordinate[0];
         const auto& y_in_pixel = points.coordinate[1];
         const auto column = static_cast<float>(batch.pixel % width), row = static_cast<float>(batch.pixel / width);
         path.half_batch = h;
-        path.sampling.is_last = batch.ends_at_first_hit;
-        for (std::uint32_t i = 0; i < batch.size; ++i, ++path.sample) {
+        path.sampling.ends_at_next_hit = batch.ends_at_first_hit;
+        for (std::uint32_t i = 0; i < batch.half_size; ++i, ++path.sample) {
             path.index_in_sequence = batch.first_index + i;
-            // Only the first path of a half batch looks up the level of its element. It stands for all paths.
-            path.level_samples = i == 0 ? batch.size : 0;
+            // Looking up the level of an element is slow, so the first path of a half batch does it for all of them.
+            path.level_samples = i == 0 ? batch.half_size : 0;
             paths_.add(path, plan_.start.camera->ray(column + x_in_pixel[i], row + y_in_pixel[i]));
         }
     }
@@ -101,14 +101,15 @@ void PathIntegrator::start_at_gauges(std::span<const SampleBatch> batches) {
     for (std::uint32_t h = 0; h < keys_.size(); ++h) {
         const SampleBatch& batch = batches[h / 2];
         const Gauge& gauge = plan_.start.gauges[batch.pixel];
-        fill_points(PointSet::sobol, keys_[h], batch.first_index, batch.size, points);
-        const auto& [place_on_arc, u, v, unused] = points.coordinate;
+        fill_points(PointSet::sobol, keys_[h], batch.first_index, batch.half_size, points);
+        // The position on the gauge's arc determines the normal; u and v, where the path starts on the patch
+        const auto& [position_on_arc, u, v, unused] = points.coordinate;
         path.half_batch = h;
         path.patch = gauge.patch;
-        path.lookup = start_on(plan_.scene, gauge, gauge.normal, 0.5f, 0.5f);  // middle of the gauge
-        for (std::uint32_t i = 0; i < batch.size; ++i, ++path.sample) {
+        path.lookup_position = start_on(plan_.scene, gauge, gauge.normal, 0.5f, 0.5f);  // middle of the gauge
+        for (std::uint32_t i = 0; i < batch.half_size; ++i, ++path.sample) {
             path.index_in_sequence = batch.first_index + i;
-            path.normal = gauge.normal_at(place_on_arc[i]);
+            path.normal = gauge.normal_at(position_on_arc[i]);
             path.position = start_on(plan_.scene, gauge, path.normal, u[i], v[i]);
             paths_.add(path, {path.position, path.normal});  // choose_directions() replaces this ray
         }
@@ -118,6 +119,7 @@ void PathIntegrator::start_at_gauges(std::span<const SampleBatch> batches) {
 
 void PathIntegrator::find_next_vertices() {
     const bool has_panes_or_mirrors = !plan_.scene.panes.empty() || plan_.scene.has_mirrors;
+    // In pictures of irradiance, panes and mirrors count as white diffuse surfaces, too.
     const bool splits_paths = has_panes_or_mirrors && !next_surfaces_are_white();
     const bool mirrors_reflect = vertex_ == 1 && plan_.options.mirrors;
     find_surfaces(plan_.scene, splits_paths, mirrors_reflect, paths_, counts_);
@@ -127,7 +129,7 @@ void PathIntegrator::find_next_vertices() {
         if (move_to_hit(paths_.hits[i], paths_.rays[i], path)) paths_.paths[kept++] = path;
     }
     paths_.paths.resize(kept);
-    paths_.rays.resize(kept);
+    paths_.rays.resize(kept);  // not the rays of the kept paths; choose_directions() replaces them
 }
 
 bool PathIntegrator::move_to_hit(const Hit& hit, const Ray& ray, Path& path) {
@@ -144,12 +146,12 @@ bool PathIntegrator::move_to_hit(const Hit& hit, const Ray& ray, Path& path) {
         const Rgb& irradiance = plan_.known->irradiance(plan_.known->place(surface.patch, surface.x));
         add_prediction(path, surface.exitance / pi, surface.reflectance * irradiance / pi);
     }
-    if (path.sampling.is_last || end_at_known_light(surface, path)) return false;
+    if (path.sampling.ends_at_next_hit || end_at_known_light(surface, path)) return false;
     // Virtual lights have already contributed a part of the light from this surface
     if (plan_.virtual_lights && vertex_ > 1) path.throughput *= share_beyond_virtual_lights(surface, path);
     path.throughput *= surface.reflectance;
     path.patch = surface.patch;
-    path.position = path.lookup = plan_.scene.lifted(surface.patch, surface.x);
+    path.position = path.lookup_position = plan_.scene.lifted(surface.patch, surface.x);
     // Later vertices are not visible, so they need no shading normal.
     path.normal = vertex_ == 1 ? plan_.scene.shading_normal(surface.patch, surface.x)
                                : plan_.scene.geometry[surface.patch].normal();
@@ -170,8 +172,8 @@ PathIntegrator::SurfaceHit PathIntegrator::surface_hit(const Hit& hit, const Ray
 
 void PathIntegrator::record_first_hit(const SurfaceHit& hit, const Path& path) {
     FirstHit& first_hit = first_hits_[path.sample];
-    // find_surfaces() appends paths that it splits at panes and mirrors. So the surface behind a clear pane, or in a
-    // pure mirror, replaces the hit of the pane or mirror.
+    // find_surfaces() appends the paths behind panes and in mirrors, so their hits are recorded later. If the pane is
+    // clear or the mirror pure, sets_first_hit remains set, and the later hit replaces its hit.
     if (vertex_ == 1 && path.sets_first_hit) {
         first_hit = {.albedo = RgbD(hit.reflectance),
                      .normal = Imath::V3d(plan_.scene.geometry[hit.patch].normal()),
@@ -190,9 +192,9 @@ void PathIntegrator::record_first_hit(const SurfaceHit& hit, const Path& path) {
 void PathIntegrator::add_sky(const Path& path, const V3f& direction) {
     const Skies& skies = plan_.sources().skies();
     if (vertex_ == 1) {
-        const Rgb visible = skies.seen(direction);
-        add_prediction(path, visible, Rgb(0));
-        add(path.half_batch, 0, path.throughput * visible);
+        const Rgb visible_radiance = skies.radiance_with_suns(direction);
+        add_prediction(path, visible_radiance, Rgb(0));
+        add(path.half_batch, 0, path.throughput * visible_radiance);
         return;
     }
     Rgb radiance = sampled_sky(path, direction);
@@ -210,19 +212,20 @@ void PathIntegrator::add_emission(const SurfaceHit& hit, const Path& path) {
         add(path.half_batch, 0, radiance);
         return;
     }
-    if (!path.sampling.directions_find_patches) return;  // shadow rays contribute all its light
+    if (!path.sampling.directions_find_patches) return;  // shadow rays contribute the whole emission
     const float source_density =
         plan_.sources().density(hit.patch, path.position, path.normal, hit.direction, hit.distance * hit.distance);
+    const std::uint32_t shadow_rays = plan_.sources().useful_rays(SourceKind::patches, path.sampling.rays);
     const float weight =
-        balance(direction_density(path, hit.direction), static_cast<float>(path.sampling.rays) * source_density);
+        balance(direction_density(path, hit.direction), static_cast<float>(shadow_rays) * source_density);
     add(path.half_batch, vertex_ - 1, radiance * weight);
 }
 
 void PathIntegrator::add_prediction(const Path& path, const Rgb& emitted, const Rgb& predicted) {
     PathLight& light = light_[path.half_batch];
     light.predicted += RgbD(path.throughput * predicted);
-    const double first_hit = mean_channel(RgbD(path.throughput * (emitted + predicted)));
-    light.square_of_first_hit += first_hit * first_hit;
+    const double radiance = mean_channel(RgbD(path.throughput * (emitted + predicted)));
+    light.square_of_first_hit += radiance * radiance;
 }
 
 void PathIntegrator::illuminate_vertices() {
@@ -243,38 +246,38 @@ bool PathIntegrator::light_first_point(Path& path) {
     if (!lookup.is_found) return false;
     path.sampling = sampling_with_record(lookup.guide);
     // Compute unoccluded light; shadow rays estimate the occlusion
-    LightSample strata{};
-    if (plan_.scene.unoccluded.samples_sources())
-        strata = light_sample(keys_[path.half_batch], vertex_, LightStream::unoccluded, path.index_in_sequence);
-    connect_to_sources(path, first_points_.add(path, strata));
+    LightSample numbers{};
+    if (plan_.scene.unoccluded_light.samples_sources())
+        numbers = light_sample(keys_[path.half_batch], vertex_, LightStream::unoccluded, path.index_in_sequence);
+    connect_to_sources(path, first_points_.add(path, numbers));
     return true;
 }
 
 SourceSampling PathIntegrator::sampling_with_record(std::uint32_t guide) const {
-    // FirstPoints compares the unoccluded light of patches with that of shadow rays, so shadow rays alone must sample
-    // it.
-    const bool directions_find_patches = !plan_.scene.unoccluded.has(SourceKind::patches);
+    // FirstPoints estimates the visible part of the unoccluded light of patches by shadow rays. Sampled directions
+    // would add this light a second time.
+    const bool directions_find_patches = !plan_.scene.unoccluded_light.has(SourceKind::patches);
     const Skies& skies = plan_.sources().skies();
     const bool directions_find_sky = skies.can_sample() || channel_sum(skies.uniform_radiance()) > 0;
     const bool needs_directions = directions_find_patches || directions_find_sky;
     return {.rays = plan_.first_shadow_rays,
             .guide = guide,
             .directions = needs_directions ? 1.0f / paths_per_direction : 0,
-            .is_last = true,
+            .ends_at_next_hit = true,
             .directions_find_patches = directions_find_patches};
 }
 
 void PathIntegrator::connect_to_sources(const Path& path, std::uint32_t first_point) {
     for (const SourceKind kind : source_kinds) {
-        if (kind == SourceKind::suns && vertex_ == 1 && !plan_.has_suns) continue;
+        if (kind == SourceKind::suns && vertex_ == 1 && !plan_.has_direct_sunlight) continue;
         const std::uint32_t count = plan_.sources().useful_rays(kind, path.sampling.rays);
-        const std::uint32_t receiver = plan_.scene.unoccluded.has(kind) ? first_point : none;
+        const std::uint32_t receiving_point = plan_.scene.unoccluded_light.has(kind) ? first_point : none;
         for (std::uint32_t number = 0; number < count; ++number)
-            connect_to_source(path, {kind, number, count}, receiver);
+            connect_to_source(path, {kind, number, count}, receiving_point);
     }
-    const std::uint32_t count = path.sampling.rays;
-    for (std::uint32_t number = 0; number < count; ++number)
-        connect_to_sky(path, path.index_in_sequence * count + number);
+    const std::uint32_t sky_rays = path.sampling.rays;
+    for (std::uint32_t number = 0; number < sky_rays; ++number)
+        connect_to_sky(path, path.index_in_sequence * sky_rays + number);
 }
 
 void PathIntegrator::connect_to_source(const Path& path, const SourceRay& ray, std::uint32_t first_point) {
@@ -359,10 +362,11 @@ Rgb PathIntegrator::sampled_sky(const Path& path, const V3f& direction) const {
 
 void PathIntegrator::choose_directions() {
     std::size_t kept = 0;
-    for (Path path : paths_.paths) {
+    for (Path path : paths_.paths) {  // a copy, because the paths that continue move to the front
         const std::uint64_t key = keys_[path.half_batch];
-        if (path.sampling.is_last) {
-            // Select one path in four. A random offset gives each path the same probability
+        if (path.sampling.ends_at_next_hit) {
+            // The point has recorded light. Select one path in four; a random offset gives each path the same
+            // probability
             const std::uint64_t offset = mix(key, selection_stream);
             const bool is_selected = (path.index_in_sequence + offset) % paths_per_direction == 0;
             if (!(path.sampling.directions > 0) || !is_selected) continue;
@@ -397,10 +401,10 @@ void PathIntegrator::store(std::span<SampleBatch> batches) const {
         SampleBatch& batch = batches[b];
         for (std::size_t h = 0; h < 2; ++h) {
             batch.halves[h] = light_[2 * b + h] * factor;
-            batch.halves[h].square_of_first_hit *= factor;  // squares are scaled by factor^2
+            batch.halves[h].square_of_first_hit *= factor;  // a second time, because it is a square
         }
         // The samples of a batch are consecutive, as Path::sample counts them.
-        for (const std::size_t end = sample + 2 * std::size_t{batch.size}; sample < end; ++sample)
+        for (const std::size_t end = sample + 2 * std::size_t{batch.half_size}; sample < end; ++sample)
             batch.first += first_hits_[sample];
         batch.done = true;
     }

@@ -84,7 +84,7 @@ Rendering draw_elements(const Scene& scene, const ElementForest& forest, const R
         const auto value = [&](const Ray& ray, const Hit& hit) {
             escaped += hit.patch == none ? 1 : 0;
             if (hit.patch != none) return RgbD(shader.value_at(ray, hit));
-            return shows_irradiance ? RgbD(0) : RgbD(skies.seen(ray.direction));
+            return shows_irradiance ? RgbD(0) : RgbD(skies.radiance_with_suns(ray.direction));
         };
         for (std::size_t i = 0; i < samples.rays.size(); ++i) sum += value(samples.rays[i], samples.hits[i]);
         thread_local std::vector<Panes::HitBehind> behind;

@@ -206,8 +206,8 @@ class PathPicture {
                 if (present[i] >= wanted[i]) continue;
                 if (!more) renew_virtual_lights(chunk);
                 chunk.push_back(next_batch(i, present[i], wanted[i]));
-                present[i] += chunk.back().size;
-                paths += 2 * std::size_t{chunk.back().size};
+                present[i] += chunk.back().half_size;
+                paths += 2 * std::size_t{chunk.back().half_size};
                 more = has_traced = true;
                 if (paths >= SharedBatches::paths_at_once(monitor_.ranks)) {
                     trace_chunk(chunk);
@@ -221,7 +221,9 @@ class PathPicture {
 
     /// Whether the solution predicts the light of the picture. A solution includes the light of suns. In a picture
     /// without it, the edges of their shadows would add noise.
-    bool predicts_light() const { return plan_.has_suns || plan_.sources().useful_rays(SourceKind::suns, 1) == 0; }
+    bool predicts_light() const {
+        return plan_.has_direct_sunlight || plan_.sources().useful_rays(SourceKind::suns, 1) == 0;
+    }
 
     /// Traces camera rays alone at edges and textures, even if the time is over: they are cheap.
     void add_first_hits() {
@@ -231,7 +233,7 @@ class PathPicture {
         std::size_t rays = 0;
         for (std::uint32_t i = 0; i < pixels_.size(); ++i) {
             if (needed[i] == 0) continue;
-            chunk.push_back({.pixel = i, .number = number, .size = needed[i], .ends_at_first_hit = true});
+            chunk.push_back({.pixel = i, .number = number, .half_size = needed[i], .ends_at_first_hit = true});
             rays += 2 * std::size_t{needed[i]};
             if (rays < SharedBatches::paths_at_once(monitor_.ranks)) continue;
             trace_first_hits(chunk);
@@ -259,8 +261,9 @@ class PathPicture {
     /// In hybrid shading, the batches of a pixel continue two sequences; otherwise they are independent.
     SampleBatch next_batch(std::uint32_t pixel, std::uint32_t present, std::uint32_t wanted) const {
         constexpr std::uint32_t largest = 64;  // samples of each half in a batch of hybrid shading
-        if (plan_.hybrid) return {.pixel = pixel, .first_index = present, .size = std::min(largest, wanted - present)};
-        return {.pixel = pixel, .number = present / batch_size(), .size = batch_size()};
+        if (plan_.hybrid)
+            return {.pixel = pixel, .first_index = present, .half_size = std::min(largest, wanted - present)};
+        return {.pixel = pixel, .number = present / batch_size(), .half_size = batch_size()};
     }
 
     void trace_chunk(std::vector<SampleBatch>& chunk) {
@@ -270,7 +273,7 @@ class PathPicture {
         for (const SampleBatch& batch : chunk) {
             if (!batch.done) continue;
             pixels_[batch.pixel].add(batch, error_source());
-            samples_done_ += batch.size;
+            samples_done_ += batch.half_size;
         }
         chunk.clear();
         report(std::min(1.0, static_cast<double>(samples_done_) / expected_samples_));
@@ -345,7 +348,7 @@ Rendering trace_instant_picture(const Scene& scene, const RayCaster& ray_caster,
 
 Rendering trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
                         const PictureOptions& options, const Monitor& monitor, const KnownIrradiance* known,
-                        bool has_suns) {
+                        bool has_direct_sunlight) {
     require_valid(options);
     ray_caster.require_made_for(scene);
     give_order(monitor.ranks,
@@ -353,12 +356,13 @@ Rendering trace_picture(const Scene& scene, const RayCaster& ray_caster, const P
                 .options = options,
                 .is_known = known != nullptr,
                 .is_interpolated = known && known->is_interpolated,
-                .has_suns = has_suns},
+                .has_direct_sunlight = has_direct_sunlight},
                start);
     StopRequest time_left;
     time_left.limit_time(StopRequest::Clock::now(), options.time);
     const TracedScene traced(scene, ray_caster);
-    const PathPlan plan{.scene = traced, .start = start, .options = options, .has_suns = has_suns};
+    const PathPlan plan{
+        .scene = traced, .start = start, .options = options, .has_direct_sunlight = has_direct_sunlight};
     // Rough share of the time, for progress reports.
     const double share_of_records = known && known->is_interpolated ? 0.25 : 0;
     const PreparedLight prepared(plan, known, monitor_section(monitor, 0, share_of_records));

@@ -21,13 +21,13 @@ Rendering trace_instant_picture(const Scene& scene, const RayCaster& ray_caster,
                                 const PictureOptions& options, const Monitor& monitor);
 
 /// Draws a picture by path tracing, final gathering or hybrid shading. Collective.
-/// @param start  Camera or gauges of options.width x options.height pixels.
-/// @param known  Light at which paths end; null: only Russian roulette ends them.
-/// @param has_suns  Whether the picture shows light that directional lights send to its surfaces.
-/// @return       The picture in rank 0; empty in other ranks.
+/// @param start                Camera or gauges of options.width x options.height pixels.
+/// @param known                Light at which paths end; null: only Russian roulette ends them.
+/// @param has_direct_sunlight  Whether the picture shows light that directional lights send to its surfaces.
+/// @return                     The picture in rank 0; empty in other ranks.
 Rendering trace_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
                         const PictureOptions& options, const Monitor& monitor, const KnownIrradiance* known,
-                        bool has_suns = true);
+                        bool has_direct_sunlight = true);
 
 /// Returns the start of paths at the camera of a view. @throws InputError as Camera() does.
 PathStart start_at_camera(const View& view, const PictureOptions& options, const Imath::V3d& origin);

@@ -99,27 +99,27 @@ void PixelStatistics::Spread::add(const PathLight& light) {
 }
 
 void PixelStatistics::add(const SampleBatch& b, ErrorSource source) {
-    samples_ += b.size;
+    samples_ += b.half_size;
     first_sum_ += b.first;
     for (std::size_t h = 0; h < 2; ++h) sums_[h] += b.halves[h];
     if (source == ErrorSource::halves) {
         spread_ = {};
         for (std::size_t h = 0; h < 2; ++h) spread_.add(half_mean(h));
     } else if (source == ErrorSource::half_batches) {
-        for (const PathLight& sum : b.halves) spread_.add(sum * (1.0 / b.size));
+        for (const PathLight& sum : b.halves) spread_.add(sum * (1.0 / b.half_size));
     } else {
         PathLight sum = b.halves[0];
         sum += b.halves[1];
-        spread_.add(sum * (0.5 / b.size));
+        spread_.add(sum * (0.5 / b.half_size));
     }
 }
 
 void PixelStatistics::add_first_hits(const SampleBatch& b) {
-    number_of_first_hits_ = b.size;
+    number_of_first_hits_ = b.half_size;
     first_sum_ += b.first;
     for (std::size_t h = 0; h < 2; ++h)
-        first_hits_[h] = {Rgb(b.halves[h].emitted / static_cast<double>(b.size)),
-                          Rgb(b.halves[h].predicted / static_cast<double>(b.size))};
+        first_hits_[h] = {Rgb(b.halves[h].emitted / static_cast<double>(b.half_size)),
+                          Rgb(b.halves[h].predicted / static_cast<double>(b.half_size))};
     spread_ = {};
     for (std::size_t h = 0; h < 2; ++h) spread_.add(half_mean(h));
 }

@@ -83,7 +83,7 @@ PathRays LitSurfaces::camera_rays(std::size_t begin, std::size_t count, std::vec
 
 Rgb LitSurfaces::emitted_light(const Ray& ray, const Hit& hit) const {
     if (shows_irradiance_) return Rgb(0);
-    if (hit.patch == none) return scene_.sources.skies().seen(ray.direction);
+    if (hit.patch == none) return scene_.sources.skies().radiance_with_suns(ray.direction);
     return scene_.colours(hit.patch, point_of(ray, hit)).exitance / std::numbers::pi_v<float>;
 }
 

@@ -54,7 +54,7 @@ Rendering preview(const Scene& scene, const Solution& solution, const RayCaster&
     known.is_interpolated = true;
     Rendering result =
         trace_picture(scene, ray_caster, start_at_camera(view, coarse, scene.origin), coarse, light_monitor, &known,
-                      /*has_suns=*/false);
+                      /*has_direct_sunlight=*/false);
     const CoarseLight light(result.layers, denoise(result.layers, preview_options.denoiser).image);
     result.layers = {};
     result.standard_error = {};

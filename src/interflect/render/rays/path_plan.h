@@ -46,7 +46,7 @@ struct PathPlan {
     const PictureOptions& options;
     std::uint32_t first_shadow_rays = 1;         ///< Shadow rays to each kind of source at first points.
     bool has_direct = true;                      ///< Whether light that is reflected once is included.
-    bool has_suns = true;                        ///< Whether directional lights light the first points.
+    bool has_direct_sunlight = true;             ///< Whether directional lights light the first points.
     const LightSources* seen_sources = nullptr;  ///< Sources weighted by visibility; null: those of the scene.
     const KnownLight* known = nullptr;           ///< Light at which paths end; null: only Russian roulette ends them.
     std::uint32_t paths_per_place = 1;           ///< Number of paths for each ray to a place of KnownLight::sample().

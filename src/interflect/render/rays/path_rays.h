@@ -14,7 +14,8 @@ struct SourceSampling {
     std::uint32_t rays = 1;      ///< Maximum number of shadow rays to each kind of source, and to skies.
     std::uint32_t guide = none;  ///< Record whose SkyGuide samples the sky; none: no guide.
     float directions = 1;  ///< Expected number of sampled directions per path; below 1 if only some paths sample one.
-    bool is_last = false;  ///< Whether the path ends at its next surface, where it only collects emitted light.
+    /// Whether the path ends at its next surface, where it only collects emitted light.
+    bool ends_at_next_hit = false;
     bool directions_find_patches =
         true;  ///< Whether paths add the emission of patches that they hit. Else shadow rays alone do.
 };
@@ -26,9 +27,10 @@ struct Path {
     std::uint32_t index_in_sequence = 0;  ///< Index of the path in the sequence of its half.
     // The last vertex of the path:
     V3f position{0, 0, 0};  ///< Position, lifted off the surface, or that of the camera [m].
-    V3f lookup{0, 0, 0};    ///< Position at which records are looked up: `position`, or the middle of the gauge [m].
-    V3f normal{0, 0, 0};    ///< Shading normal.
-    PatchIndex patch{};     ///< Patch of the vertex; none for the camera and gauges in space.
+    /// Position at which records are looked up: `position`, or the middle of the gauge [m].
+    V3f lookup_position{0, 0, 0};
+    V3f normal{0, 0, 0};  ///< Shading normal.
+    PatchIndex patch{};   ///< Patch of the vertex; none for the camera and gauges in space.
     SourceSampling sampling{};
     float travelled = 0;  ///< Distance from the vertex to the ray's origin, through panes and by mirrors [m].
     bool sets_first_hit =

@@ -38,7 +38,9 @@ struct PathLight {
     double record_error = 0;  ///< Standard error of recorded light, mean channel; common to all paths.
     /// Prediction of direct + indirect light by the first hit alone, from the elements of a solution; 0 without one.
     RgbD predicted{0, 0, 0};
-    /// Squares of the emitted and predicted light of each first hit, mean channel. Their spread shows edges.
+    /// Squares of the emitted and predicted light of each first hit, mean channel. Their spread shows edges, where
+    /// pixels need more first hits; no stated error depends on it. If mirrors and panes split a sample, each path is
+    /// squared alone, so the spread is underestimated there.
     double square_of_first_hit = 0;
 
     PathLight& operator+=(const PathLight& o) {
@@ -56,13 +58,13 @@ struct PathLight {
     }
 };
 
-/// Paths of a pixel or gauge: two halves of equal size. They are independent, except that hybrid shading shares lookups
-/// and fits coefficients across them (FirstPoints).
+/// Paths of a pixel or gauge: two halves of equal size, whose difference shows the error. They are independent, except
+/// that hybrid shading shares lookups and fits coefficients across them (FirstPoints).
 struct SampleBatch {
     std::uint32_t pixel = 0;
     std::uint32_t number = 0;       ///< Number of the batch of its pixel. Batches of different numbers are independent.
     std::uint32_t first_index = 0;  ///< Index of the first path in the sequence of each half.
-    std::uint32_t size = 1;         ///< Number of paths of each half.
+    std::uint32_t half_size = 1;    ///< Number of paths of each half.
     /// Whether the paths end at their first hit, with emitted and predicted light alone.
     bool ends_at_first_hit = false;
     bool done = false;

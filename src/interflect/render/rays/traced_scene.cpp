@@ -27,7 +27,7 @@ TracedScene::TracedScene(const Scene& s, const RayCaster& caster)
       ray_caster(caster),
       geometry(geometry_of(s)),
       sources(s, geometry),
-      unoccluded(s, geometry),
+      unoccluded_light(s, geometry),
       panes(s, caster),
       has_mirrors(mirrors_anything(s)) {
     if (!s.normals.empty()) smooth_normals.emplace(s, find_smooth_surfaces(s));

@@ -31,7 +31,7 @@ struct TracedScene {
     const RayCaster& ray_caster;
     const std::vector<PatchGeometry> geometry;  ///< Geometry of each patch.
     const LightSources sources;
-    const UnoccludedLight unoccluded;
+    const UnoccludedLight unoccluded_light;
     const Panes panes;
     const bool has_mirrors;
     std::optional<SmoothNormals> smooth_normals;  ///< Shading normals, in scenes with normals.

@@ -20,11 +20,11 @@ struct LightOrder {
         end,              ///< Ends share_light().
     };
     Kind kind = Kind::end;
-    PictureOptions options{};      ///< Options of the paths.
-    bool is_known = false;         ///< Whether paths end at the solution.
-    bool is_interpolated = false;  ///< Value of KnownIrradiance::is_interpolated.
-    bool has_suns = true;          ///< Value of PathPlan::has_suns.
-    std::size_t group = 0;         ///< Index of the light group, for Kind::group.
+    PictureOptions options{};         ///< Options of the paths.
+    bool is_known = false;            ///< Whether paths end at the solution.
+    bool is_interpolated = false;     ///< Value of KnownIrradiance::is_interpolated.
+    bool has_direct_sunlight = true;  ///< Value of PathPlan::has_direct_sunlight.
+    std::size_t group = 0;            ///< Index of the light group, for Kind::group.
 };
 
 /// Sends an order from rank 0 to the other ranks. On other ranks, or without `ranks`, it has no effect.

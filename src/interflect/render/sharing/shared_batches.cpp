@@ -20,7 +20,7 @@ RayCounts SharedBatches::trace(std::span<SampleBatch> batches, const std::functi
         std::vector<Key> keys;
         keys.reserve(batches.size());
         for (const SampleBatch& b : batches)
-            keys.push_back({b.pixel, b.number, b.first_index, b.size, b.ends_at_first_hit});
+            keys.push_back({b.pixel, b.number, b.first_index, b.half_size, b.ends_at_first_hit});
         broadcast(*ranks_, std::span(keys));
     }
     return trace_own(batches, is_over);
@@ -61,7 +61,7 @@ RayCounts SharedBatches::trace_own(std::span<SampleBatch> batches, const std::fu
     // Number of paths that are traced together, to amortise the cost of a call.
     constexpr std::size_t paths_per_tile = 2048;
     std::size_t largest = 1;
-    for (const SampleBatch& b : batches) largest = std::max<std::size_t>(largest, 2 * std::size_t{b.size});
+    for (const SampleBatch& b : batches) largest = std::max<std::size_t>(largest, 2 * std::size_t{b.half_size});
     const std::size_t per_tile = std::max<std::size_t>(1, paths_per_tile / largest);
     std::vector<RayCounts> counts((batches.size() + per_tile - 1) / per_tile);
     parallel_for_own_ranges(ranks_, batches.size(), per_tile, [&](std::size_t begin, std::size_t end) {

@@ -22,10 +22,11 @@ constexpr double decay_at_first = 0.1, decay_while_it_grows = 0.9, highest_decay
 
 }  // namespace
 
-BounceBudget::BounceBudget(std::int64_t rays, double previous_total)
-    : rays_(rays),
-      left_(rays),
+BounceBudget::BounceBudget(std::int64_t rays, double previous_total, bool separates_first)
+    : rays_(separates_first ? std::max<std::int64_t>(2, rays) : rays),
+      left_(rays_),
       previous_total_(previous_total > 0 ? previous_total : assumed_bounces),
+      separates_first_(separates_first),
       is_measured_(previous_total > 0) {}
 
 BounceRays BounceBudget::next(double unshot) {
@@ -39,10 +40,13 @@ BounceRays BounceBudget::next(double unshot) {
     const double to_come = is_measured_ ? std::max(planned, unshot / (1 - decay_at_first)) : geometric;
     const double share = std::min(left * unshot / to_come, static_cast<double>(rays_) * unshot / previous_total_);
     const double to_walk = std::max(planned, geometric);
-    is_last_ = share < fewest_rays_of_bounce || share + 1 > left || to_walk < min_share_left * previous_total_;
+    const bool is_separate = separates_first_ && unshot_sum_ == 0;
+    is_last_ = !is_separate &&
+               (share < fewest_rays_of_bounce || share + 1 > left || to_walk < min_share_left * previous_total_);
     const double starting = is_last_ ? left * unshot / to_walk : share;  // a walk has to_walk / unshot rays
     const std::int64_t fewest = is_last_ ? fewest_walks : 1;
-    const std::int64_t started = std::max<std::int64_t>(fewest, std::llround(starting));
+    std::int64_t started = std::max<std::int64_t>(fewest, std::llround(starting));
+    if (is_separate) started = std::min(started, left_ - 1);  // the other bounces need a ray
     const std::int64_t expected = is_last_ ? left_ : started;
     left_ -= expected;
     unshot_sum_ += unshot;

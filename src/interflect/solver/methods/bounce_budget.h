@@ -14,8 +14,10 @@ struct BounceRays {
 class BounceBudget {
   public:
     BounceBudget() = default;
-    /// @param previous_total  total_unshot() of the previous pass; 0: unknown.
-    BounceBudget(std::int64_t rays, double previous_total);
+    /// @param previous_total   total_unshot() of the previous pass; 0: unknown.
+    /// @param separates_first  Whether the first bounce must not be the last one, so that its light contains no light
+    ///                         of random walks. This needs two rays, so a pass of one ray traces two.
+    BounceBudget(std::int64_t rays, double previous_total, bool separates_first = false);
 
     /// Returns the rays of the next bounce. @param unshot  Unshot power, relative to that of the first bounce.
     BounceRays next(double unshot);
@@ -28,6 +30,7 @@ class BounceBudget {
     std::int64_t rays_ = 0, left_ = 0;
     double previous_total_ = 1;
     double last_unshot_ = 0, unshot_sum_ = 0, decay_ = 0;
+    bool separates_first_ = false;
     bool is_measured_ = false;  // whether previous_total_ is measured
     bool is_last_ = false;
 };

@@ -45,8 +45,8 @@ Estimate OneBounce::trace(SolverState& state, TracedIteration& iteration) {
     step.groups = group_radiosity(state.inputs, state.light, solution.groups);
     const bool is_deferred = state.light.options().experimental.defer_refinement && iteration.plan.warms_up;
     if (state.light.options().method.refines && !is_deferred)
-        step.oracle =
-            make_oracle(solution, state.rays.schedule.averaged_rays() + rays, state.inputs.floor.default_min_area());
+        step.oracle = make_oracle(solution, state.rays.schedule.averaged_rays() + rays,
+                                  state.inputs.element_floor.default_min_area());
     Received received = run_step(state, std::move(step));
     state.light.solution.non_finite += power.non_finite_leaves;
     return {.irradiance = std::move(received.irradiance),

@@ -64,8 +64,8 @@ void set_estimate(LightState& light, Estimate estimate) {
 /// Returns the number of rays traced so far, also in the current iteration.
 std::int64_t rays_so_far(const RayTotals& rays) { return rays.power + rays.importance; }
 
-/// Counts the rays of a bounce. The share alpha of its rays is sampled by importance if they carry importance (Eq. 11,
-/// Prikryl et al. 2000).
+/// Adds the rays of a bounce to the totals. Rays that carry power and importance are divided: the share alpha, for
+/// which the importance determines the sampling (Eq. 11, Prikryl et al. 2000), counts as importance rays.
 void count_rays(RayTotals& totals, std::int64_t rays, bool carries_importance, double alpha) {
     const double importance_share = carries_importance ? alpha : 0;
     const std::int64_t importance_rays = std::llround(importance_share * static_cast<double>(rays));
@@ -73,8 +73,9 @@ void count_rays(RayTotals& totals, std::int64_t rays, bool carries_importance, d
     totals.power += rays - importance_rays;
 }
 
-/// Returns whether the oracle refines in iterations. It always refines in prepare(), where the variance is unknown.
-bool oracle_refines_passes(const LightState& light) {
+/// Returns whether the oracle refines the mesh during iterations. make_initial_mesh() does not depend on it, because
+/// the variance is unknown there.
+bool oracle_refines_in_iterations(const LightState& light) {
     return light.options().method.refines && !refines_by_variance(light.options());
 }
 
@@ -98,11 +99,12 @@ struct Passes::Pass {
     const bool oracle_refines;  ///< Whether the oracle refines the mesh while rays are traced.
     BounceBudget budget;
     ImportanceWeights weights;
-    /// Per element: 1 if its reflected rays start at hit points (StartPoints), else 0. Empty while the oracle refines.
+    /// Flag of each element: 1 if its reflected rays start at hit points (StartPoints), else 0. Empty while the oracle
+    /// refines.
     std::vector<std::uint8_t> reflecting_where_received = {};
 
     Estimate sum = {};                                 ///< Light of the traced bounces.
-    double first_power = 0, first_weighted_power = 0;  ///< As in PowerPlan, of the first bounce.
+    double first_power = 0, first_weighted_power = 0;  ///< Power of the first bounce, plain and weighted by importance.
 
     bool emits = true;              ///< Whether the next bounce is the first, which shoots the emitted power.
     std::vector<Rgb> unshot = {};   ///< Irradiance that the next bounce reflects.
@@ -135,8 +137,9 @@ TransportStep Passes::Pass::make_step(const SolverState& state, RayPlan plan) {
     step.leaves_only = !oracle_refines;
     const std::int64_t rays_in_mean = state.rays.schedule.averaged_rays() + rays;
     if (oracle_refines)
-        step.oracle = make_oracle(state.light.solution, rays_in_mean, state.inputs.floor.default_min_area());
-    step.reusable_buffer = &unshot;  // add_bounce() replaces its values
+        step.oracle = make_oracle(state.light.solution, rays_in_mean, state.inputs.element_floor.default_min_area());
+    // Tracing is the last use of these values. Then add_bounce() replaces them.
+    step.reusable_buffer = &unshot;
     return step;
 }
 
@@ -154,6 +157,7 @@ void Passes::Pass::grow(const ElementForest& forest, std::uint32_t old_elements)
 
 /// Adds the received light to the sum. The next bounce will shoot it.
 void Passes::Pass::add_bounce(Received received, bool keeps_direct) {
+    // The budget separates the first bounce from random walks, so it contains no indirect light
     if (emits && keeps_direct) sum.direct = received.groups.empty() ? GroupLight{received.irradiance} : received.groups;
     add(sum, received);
     emits = false;
@@ -163,27 +167,32 @@ void Passes::Pass::add_bounce(Received received, bool keeps_direct) {
 }
 
 void Passes::prepare(SolverState& state) {
+    make_initial_mesh(state);
+    if (rays_so_far(state.rays) == 0) return;
+    state.rays.schedule.record_start(/*averaged_rays=*/0, rays_so_far(state.rays));
+    append_report(state, 0);
+}
+
+void Passes::make_initial_mesh(SolverState& state) {
     // Start from zero: an interrupted preparation may have left an estimate.
     set_estimate(state.light, zero_estimate(state.inputs, state.light));
     if (state.light.options().limits.rays < fewest_rays_with_preparation) return;
     total_unshot_ = 0;
     const bool uses_importance = importance_use(state.light.solution) == ImportanceUse::full;
     const bool refines = state.light.options().method.refines;
-    // Importance and the two passes share an eighth of all rays. Without importance, each pass uses an eighth, because
-    // runs of 20,000 rays need this number for the initial mesh.
-    const std::int64_t sharing = uses_importance && refines ? 3 : 1;
-    const std::int64_t rays_per_pass = state.rays.schedule.start_rays(sharing);
-    if (uses_importance) transport_importance(state, rays_per_pass);
+    // With importance and refinement, the importance and the two passes share an eighth of all rays. Otherwise, the
+    // importance or each pass uses an eighth, because runs of 20,000 rays need this number for the initial mesh.
+    const std::int64_t sharing_steps = uses_importance && refines ? 3 : 1;
+    const std::int64_t rays_per_step = state.rays.schedule.start_rays(sharing_steps);
+    if (uses_importance) transport_importance(state, rays_per_step);
     // Aim the rays of skies and suns at important surfaces
     aim_outdoor_light(state);
     if (refines) {
         // Estimate the light on the initial mesh, then refine with this light in the oracle
-        set_estimate(state.light, trace_pass(state, rays_per_pass, /*oracle_refines=*/false));
-        set_estimate(state.light, trace_pass(state, rays_per_pass, /*oracle_refines=*/true));
+        set_estimate(state.light, trace_pass(state, rays_per_step, /*oracle_refines=*/false));
+        set_estimate(state.light, trace_pass(state, rays_per_step, /*oracle_refines=*/true));
     }
-    aim_outdoor_light(state);  // again, because the passes have improved the importance
-    state.rays.schedule.record_start(/*averaged_rays=*/0, rays_so_far(state.rays));
-    if (rays_so_far(state.rays) > 0) append_report(state, 0);
+    aim_outdoor_light(state);  // again, because passes improve the importance
 }
 
 void Passes::update_importance(SolverState& state, TracedIteration& iteration) {
@@ -205,9 +214,9 @@ Estimate Passes::trace(SolverState& state, TracedIteration& iteration) {
     if (iteration.plan.rays <= iteration.importance_rays) return {};
     const std::int64_t rays_before = rays_so_far(state.rays);
     Estimate estimate =
-        trace_pass(state, iteration.plan.rays - iteration.importance_rays, oracle_refines_passes(state.light));
+        trace_pass(state, iteration.plan.rays - iteration.importance_rays, oracle_refines_in_iterations(state.light));
     const std::int64_t traced = iteration.importance_rays + rays_so_far(state.rays) - rays_before;
-    // Weights in the mean are positive, even without light, where no rays are traced.
+    // Weights in the mean must be positive, even without light, where no rays are traced.
     iteration.rays = std::max<std::int64_t>(1, traced);
     iteration.weight = iteration.rays;
     return estimate;
@@ -233,8 +242,9 @@ void Passes::refine(SolverState& state) {
 }
 
 Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_refines) {
-    state.sampling.payloads = {};  // the report contains the payloads of the last pass only
-    Pass pass{rays, oracle_refines, BounceBudget(rays, total_unshot_),
+    state.sampling.payloads = {};  // histogram of ray power; the report describes the last pass only
+    const bool separates_direct = state.light.options().keep_direct;
+    Pass pass{rays, oracle_refines, BounceBudget(rays, total_unshot_, separates_direct),
               importance_weights(state.light.solution, state.sampling.neighbourhoods, state.inputs.emission,
                                  state.sampling.part_importance)};
     pass.unshot.assign(state.light.forest->size(), Rgb(0));
@@ -277,17 +287,19 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     const BounceRays rays = pass.budget.next(pass.relative_unshot(bounce, experimental.beta));
     if (rays.expected == 0) return false;
     bounce.plan.rays = rays.started;
-    // Trace the rays, which may create elements. In the last bounce, random walks reflect them further
+    // Trace the rays, which may create elements. Random walks reflect those of the last bounce further, so more rays
+    // are expected than started. Derived classes trace other bounces in their own way
     TransportStep step = pass.make_step(state, std::move(bounce.plan));
     const std::uint32_t old_elements = state.light.forest->size();
     Received received =
         step.completes_by_walks ? run_step(state, std::move(step)) : trace_single_bounce(state, std::move(step));
     count_rays(state.rays, rays.expected, carries_importance, experimental.alpha);
     state.sampling.payloads += received.payloads;
-    // Merge importance now, because the oracle uses it in the next bounces
-    if (carries_importance)
-        merge_importance(state.light, state.rays, received.importance,
-                         TracedIteration{.plan = {.rays = rays.expected}});
+    if (carries_importance) {
+        // Merge importance now, because the oracle uses it in the next bounces. Its weight is the number of rays
+        const TracedIteration bounce_alone{.plan = {.rays = rays.expected}};
+        merge_importance(state.light, state.rays, received.importance, bounce_alone);
+    }
     // Add the received light to the sum of all bounces
     pass.grow(*state.light.forest, old_elements);
     pass.add_bounce(std::move(received), state.light.options().keep_direct);
@@ -295,10 +307,9 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
 }
 
 void Passes::make_first_estimate(SolverState& state) {
-    prepare(state);
+    make_initial_mesh(state);
     set_estimate(state.light, trace_pass(state, state.rays.schedule.start_rays(), /*oracle_refines=*/false));
     state.light.solution.direct.clear();  // the method that continues does not separate direct light
-    // Replace the number of rays that prepare() has recorded
     state.rays.schedule.record_start(/*averaged_rays=*/0, rays_so_far(state.rays));
     append_report(state, 0);
 }

@@ -14,8 +14,7 @@ namespace interflect::detail {
 /// unbiased estimate of the light on the current mesh, independent of earlier passes.
 class Passes : public IterationMethod {
   public:
-    /// Estimates the importance. Then two passes make the initial mesh (Eq. 14, 15). Their light is not part of the
-    /// mean.
+    /// Makes the initial mesh, and reports it as iteration 0. Its light is not part of the mean.
     void prepare(SolverState& state) override;
     void update_importance(SolverState& state, TracedIteration& iteration) override;
     Estimate trace(SolverState& state, TracedIteration& iteration) override;
@@ -26,7 +25,8 @@ class Passes : public IterationMethod {
     void archive(StateArchive& archive) override;
     bool is_consistent(const SolverState& state) const override;
 
-    /// Calls prepare(), then estimates the light by one pass. Methods that improve a first estimate start with it.
+    /// Makes the initial mesh, then estimates the light by one pass. Reports both together as iteration 0. Methods that
+    /// improve a first estimate start with it.
     void make_first_estimate(SolverState& state);
 
   protected:
@@ -38,6 +38,9 @@ class Passes : public IterationMethod {
 
   private:
     struct Pass;
+    /// Estimates the importance. Then two passes refine the mesh (Eq. 14, 15), unless the method does not refine.
+    /// @throws Interrupted
+    void make_initial_mesh(SolverState& state);
     /// Estimates the importance for the new views, and the factor of the history.
     void adapt_to_new_views(SolverState& state, TracedIteration& iteration);
     /// @throws Interrupted

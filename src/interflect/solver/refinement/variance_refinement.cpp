@@ -66,7 +66,7 @@ class VarianceOracle {
             forest_.area(leaf) >= 4 * min_area(state_.inputs, state_.light, leaf) &&
             (visible_ ? signal > visible_->threshold(leaf) : weight(leaf) * static_cast<double>(signal) > min_gain);
         const bool misplaces = misplaced_power(leaf, signal) > min_misplaced_power_ &&
-                               forest_.area(leaf) >= 4 * state_.inputs.floor.default_min_area();
+                               forest_.area(leaf) >= 4 * state_.inputs.element_floor.default_min_area();
         return blurs || misplaces;
     }
 

@@ -30,7 +30,7 @@ struct RunInputs {
     Materials materials;
     std::vector<Imath::Box3f> targets;  // targets of outdoor light for the current views
     Emission emission;
-    ElementFloor floor;                   // minimum size of elements for the current views
+    ElementFloor element_floor;           // minimum size of elements for the current views
     std::vector<PatchClusters> clusters;  // empty if differences between patches are not shrunk
 };
 

@@ -85,12 +85,13 @@ float min_area(const RunInputs& inputs, const LightState& light, ElementIndex el
     const PatchIndex patch = light.forest->patch(element);
     const std::vector<float>& view_importance = light.solution.view_importance;
     const bool is_seen = !view_importance.empty() && view_importance[patch] > 0;
-    return inputs.floor.min_area(centre_of(*light.forest, element), light.forest->geometry(patch).normal(), is_seen);
+    return inputs.element_floor.min_area(centre_of(*light.forest, element), light.forest->geometry(patch).normal(),
+                                         is_seen);
 }
 
 float pixel_area(const RunInputs& inputs, const LightState& light, ElementIndex element) {
     const V3f normal = light.forest->geometry(light.forest->patch(element)).normal();
-    return inputs.floor.pixel_area(centre_of(*light.forest, element), normal);
+    return inputs.element_floor.pixel_area(centre_of(*light.forest, element), normal);
 }
 
 }  // namespace interflect::detail

@@ -62,7 +62,7 @@ void compute_view_importance(SolverState& state) {
     else
         set_targets(inputs, sampling, {});
     sampling.view = ViewImportance(light.options().views, light.options().seed);
-    inputs.floor = ElementFloor(inputs.scene, light.options());
+    inputs.element_floor = ElementFloor(inputs.scene, light.options());
     trace_view_rays(inputs, *light.forest, sampling.view, light.options().importance.camera_rays);
     solution.view_importance.clear();
     solution.indirect_importance.clear();

@@ -115,7 +115,7 @@ void ObjMaterials::read_definitions(std::string_view text, const fs::path& path)
     Definition* current = nullptr;
     for (LineReader lines(text); lines.next();) {
         const auto words = lines.words();
-        const Location location{&library_paths_.back(), lines.line(), /*part=*/{}, /*is_foreign=*/true};
+        const Location location{&library_paths_.back(), lines.line(), /*part=*/{}, /*forbids_quotes=*/true};
         if (words[0] == "newmtl") {
             current = &start_definition(std::string(lines.rest()), location);
         } else if (current && !words[0].starts_with('#')) {
@@ -135,8 +135,8 @@ ObjMaterials::Definition& ObjMaterials::start_definition(const std::string& name
     definition = Definition();
     definition.location = location;
     if (const std::string short_name(name_before_comment(name)); short_name != name) {
-        const auto [entry, is_new] = commented_definitions_.try_emplace(short_name, &definition);
-        const bool is_ambiguous = entry->second != &definition;
+        const auto entry = commented_definitions_.try_emplace(short_name, &definition).first;
+        const bool is_ambiguous = entry->second != &definition;  // another definition, or null after two others
         if (is_ambiguous) entry->second = nullptr;
     }
     return definition;
@@ -185,7 +185,7 @@ fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, con
     try {
         require_within(path, model_.file.parent_path(), options_, fmt::format("the texture '{}'", name));
     } catch (const ReadFault& fault) {
-        // Location::error() would remove the name of the texture from the message
+        // Location::error() would hide the name of the texture, which the user needs to move the file
         throw InputError(
             Fault{.text = fault.what(), .setting = fault.setting, .file = *location.file, .line = location.line});
     }
@@ -225,6 +225,7 @@ std::uint32_t ObjMaterials::add_material(const std::string& name, const Definiti
     if (has_mask) {
         is_reduced = add_masked_textures(definition, material);
     } else {
+        material.exitance *= definition.opacity;
         material.reflectance *= definition.opacity;
         material.transmittance = Rgb(1 - definition.opacity);
         material.reflectance_texture = colour_texture_index(definition);
@@ -236,6 +237,7 @@ std::uint32_t ObjMaterials::add_material(const std::string& name, const Definiti
              fmt::format("reflectance (Kd), or its sum with transmittance (d, Tr), above {} is reduced",
                          largest_reflectance),
              definition.location);
+    // The fault begins with "exitance"
     if (const std::string fault = exitance_fault(material.exitance); !fault.empty())
         throw InputError(*definition.location.file, definition.location.line,
                          fmt::format("material '{}': the {}", name, fault));
@@ -255,8 +257,8 @@ bool ObjMaterials::limit_material(Material& material, bool has_mask) const {
             material.reflectance[c] = std::min(material.reflectance[c], limit);
         }
     }
-    const bool conserves_energy = has_mask;  // in each texel of add_masked_textures()
-    if (!conserves_energy) is_reduced |= limit_sum(material);
+    // In each texel of add_masked_textures(), the sum of reflectance and transmittance is at most 1 already.
+    if (!has_mask) is_reduced |= limit_sum(material);
     return is_reduced;
 }
 
@@ -275,16 +277,18 @@ void ObjMaterials::warn_of_omitted_keys(const Definition& definition) {
 bool ObjMaterials::add_masked_textures(const Definition& definition, Material& material) {
     const StoredImage mask = read_mask(definition);
     const bool has_alpha = has_transparency(mask);
-    const Texture colours = read_colours(definition);
-    const Texture empty{definition.mask_file.string(),
-                        static_cast<std::uint32_t>(mask.width),
-                        static_cast<std::uint32_t>(mask.height),
-                        {}};
-    Texture reflectance = empty, transmittance = empty, exitance = empty;
+    const bool has_colours =
+        !definition.colour_file.empty() && accept_texture(definition.colour_file, colours_key, definition);
+    const Texture colours = has_colours ? read_colours(definition) : Texture{"", 1, 1, {Rgb(1)}};
+    const Texture of_mask_size{definition.mask_file.string(),
+                               static_cast<std::uint32_t>(mask.width),
+                               static_cast<std::uint32_t>(mask.height),
+                               {}};
+    Texture reflectance = of_mask_size, transmittance = of_mask_size, exitance = of_mask_size;
     bool is_reduced = false;
     for (std::size_t i = 0; i < mask.pixel_count(); ++i) {
-        const float opacity = definition.opacity * std::min(mask_opacity(mask, has_alpha, i), 1.0f);
-        Rgb colour = texel_at(colours, texel_centre(empty, i));
+        const float opacity = definition.opacity * mask_opacity(mask, has_alpha, i);
+        Rgb colour = texel_at(colours, texel_centre(of_mask_size, i));
         is_reduced |= largest_channel(colour) > 1;
         for (int c = 0; c < 3; ++c) colour[c] = std::min(colour[c], 1.0f);
         reflectance.texels.push_back(colour * opacity);
@@ -322,8 +326,6 @@ void ObjMaterials::limit_texels(const Location& location) {
 }
 
 Texture ObjMaterials::read_colours(const Definition& definition) {
-    if (definition.colour_file.empty() || !accept_texture(definition.colour_file, colours_key, definition))
-        return {"", 1, 1, {Rgb(1)}};
     try {
         require_regular_file(definition.colour_file);
         Texture texture = read_texture(definition.colour_file);
@@ -344,7 +346,7 @@ StoredImage ObjMaterials::read_mask(const Definition& definition) {
         count_decoded(mask.pixel_count());
         model_.files.push_back(definition.mask_file.string());
         return mask;
-    } catch (const std::runtime_error& unreadable) {
+    } catch (const std::runtime_error& unreadable) {  // InputError of the file, or an error of the decoder
         throw definition.location.error(
             fmt::format("the texture '{}': {}", definition.mask_file.filename().string(), unreadable.what()));
     }

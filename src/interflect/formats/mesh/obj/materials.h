@@ -88,7 +88,7 @@ class ObjMaterials {
     std::uint32_t add_texture(Texture texture);
     /// Reduces the largest textures if the model has more than max_texels. @param location  Place for the warning.
     void limit_texels(const Location& location);
-    /// Reads the image of map_Kd. Returns one white texel if the material has no image.
+    /// Reads the image of map_Kd. Requires accept_texture().
     Texture read_colours(const Definition& definition);
     StoredImage read_mask(const Definition& definition);
     /// Returns whether a texture exists in a format that the key (map_Kd or map_d) allows. If not, warns.

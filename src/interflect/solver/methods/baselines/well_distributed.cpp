@@ -76,7 +76,7 @@ Estimate WellDistributedRays::trace(SolverState& state, TracedIteration& iterati
     plan_missing_rays(forest, total_ + iteration.plan.rays, step);
     const std::int64_t rays = iteration.weight = iteration.rays = step.rays;
     if (state.light.options().method.refines)
-        step.oracle = make_oracle(state.light.solution, total_ + rays, state.inputs.floor.default_min_area());
+        step.oracle = make_oracle(state.light.solution, total_ + rays, state.inputs.element_floor.default_min_area());
 
     // Trace the missing rays, and count the rays of each source
     std::vector<std::uint64_t> used_before = state.sampling.streams.used,

@@ -300,7 +300,8 @@ ElementIndex LinkedElements::divided_end(const ElementPair& ends, double over_a,
 }
 
 bool LinkedElements::may_divide(ElementIndex end) const {
-    return is_cluster(end) || forest_.area(end) >= 4.0 * static_cast<double>(state_.inputs.floor.default_min_area());
+    return is_cluster(end) ||
+           forest_.area(end) >= 4.0 * static_cast<double>(state_.inputs.element_floor.default_min_area());
 }
 
 /// Keeps the candidates with the largest errors, so that the remaining rays suffice for their links.
