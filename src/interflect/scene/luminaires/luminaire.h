@@ -3,7 +3,7 @@
 #include <optional>
 #include <variant>
 
-#include "interflect/scene.h"
+#include "interflect/light_sources.h"
 
 namespace interflect::detail {
 
