@@ -198,6 +198,17 @@ TEST(Obj, TexturesAboveOneLimitTheReflectanceWithAWarning) {
     EXPECT_EQ(warning_count(scene_of_wood(folder, "Kd .8\nmap_Kd white.png\n" + mask), "reflectance-clamped"), 0);
 }
 
+/// Kd is 1 in most files with textures. Seen to reduce all colours by 1% when Kd alone is limited to 0.99.
+TEST(Obj, TexturesHaveTheirColoursIfKdIsOne) {
+    const TemporaryFolder folder;
+    write_texture(folder.path() / "grey.exr", {"", 1, 1, {Rgb(0.5f)}});
+    const Scene scene = scene_of_wood(folder, "Kd 1 1 1\nmap_Kd grey.exr\n");
+    const Rgb factor = scene.materials[scene.patches[0].material].reflectance;
+    EXPECT_NEAR(factor.x, 1, 1e-6);
+    EXPECT_LT(factor.x, 1) << "as Material requires";
+    EXPECT_EQ(warning_count(scene, "reflectance-clamped"), 0);
+}
+
 TEST(Obj, LightThatIsLeftOutGivesAWarning) {
     const TemporaryFolder folder;
     const auto count = [&](const std::string& lines, const std::string& kind) {

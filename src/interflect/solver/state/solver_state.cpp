@@ -22,7 +22,7 @@ RunInputs::RunInputs(const Scene& s, const RayCaster& caster, const SolveOptions
       groups(source_groups(scene)),
       materials(scene, caster),
       emission(scene),
-      floor(scene, options) {}
+      element_floor(scene, options) {}
 
 SamplingState::SamplingState(const RunInputs& inputs, const LightState& light)
     : view(light.options().views, light.options().seed),

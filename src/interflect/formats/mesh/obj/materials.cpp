@@ -234,7 +234,7 @@ std::uint32_t ObjMaterials::add_material(const std::string& name, const Definiti
     is_reduced |= limit_material(material, has_mask);
     if (is_reduced)
         warn("reflectance-clamped",
-             fmt::format("reflectance (Kd), or its sum with transmittance (d, Tr), above {} is reduced",
+             fmt::format("a reflectance (Kd, map_Kd) above {}, or transmittance (d, Tr) above the rest, is reduced",
                          largest_reflectance),
              definition.location);
     // The fault begins with "exitance"
@@ -247,14 +247,17 @@ std::uint32_t ObjMaterials::add_material(const std::string& name, const Definiti
 }
 
 bool ObjMaterials::limit_material(Material& material, bool has_mask) const {
-    bool is_reduced = limit_reflectance(material.reflectance);
-    if (material.reflectance_texture != none) {
+    bool is_reduced = false;
+    if (material.reflectance_texture == none) {
+        is_reduced = limit_reflectance(material.reflectance);
+    } else {
+        // Limit the product. A factor of 1, which is usual, is reduced by its last bit: it must be below 1 (Material).
+        constexpr float nearly_black = 1e-6f, largest_factor = 1 - 0x1p-24f;
         const Rgb largest = largest_texel(model_.textures[material.reflectance_texture]);
         for (int c = 0; c < 3; ++c) {
-            constexpr float nearly_black = 1e-6f;  // avoids a division by 0; the limit is then too large to matter
             const float limit = static_cast<float>(largest_reflectance) / std::max(largest[c], nearly_black);
-            is_reduced |= material.reflectance[c] > limit;
-            material.reflectance[c] = std::min(material.reflectance[c], limit);
+            is_reduced |= material.reflectance[c] > std::min(limit, 1.0f);
+            material.reflectance[c] = std::min({material.reflectance[c], limit, largest_factor});
         }
     }
     // In each texel of add_masked_textures(), the sum of reflectance and transmittance is at most 1 already.
