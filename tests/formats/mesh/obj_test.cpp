@@ -133,6 +133,7 @@ TEST(ObjNames, MayBeFollowedByCommentsWhereTheyAreDefined) {
     const Scene other =
         load_scene(folder.write("other.obj", "mtllib a.mtl\n" + obj_square + "usemtl Material\nf 1 2 3\n"));
     EXPECT_EQ(other.warnings.entries().at(0).kind, "missing-material") << "two materials have this name";
+    EXPECT_NE(other.warnings.entries().at(0).message.find("several definitions"), std::string::npos);
 }
 
 /// A triangle 2 mm long and 3 um wide, six float steps at its position, beside a floor of 8 x 8 m. It is negligible,

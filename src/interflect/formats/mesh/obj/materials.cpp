@@ -201,7 +201,10 @@ std::uint32_t ObjMaterials::index_of(const std::string& name, const Location& re
         definition = find_definition(defined_name);
     }
     if (!definition) {
-        warn("missing-material", "a material that no library defines is replaced by a grey of reflectance 0.5",
+        const bool is_ambiguous = commented_definitions_.contains(defined_name);
+        warn("missing-material",
+             fmt::format("a material that {} is replaced by a grey of reflectance 0.5",
+                         is_ambiguous ? "several definitions match" : "no library defines"),
              reference);
         return 0;
     }
