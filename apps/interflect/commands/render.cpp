@@ -33,10 +33,10 @@ namespace {
 
 /// Returns the requested view, else the first view of the scene, if any.
 std::optional<View> find_view(const Scene& scene, const RenderArguments& options) {
-    // A section is to scale in the rows above the legend
+    // Computes and logs the scale of a section for the rows above the legend
     if (options.section.is_given()) return options.section.view(scene, options.size.width, options.view_rows());
     const std::vector<View> requested = options.view.views(scene);
-    if (!requested.empty()) return requested.front();
+    if (!requested.empty()) return requested.front();  // complete_options() refuses several views
     if (!scene.views.empty()) return scene.views.front();
     return std::nullopt;
 }
@@ -103,7 +103,7 @@ void render_solution(const RenderArguments& options, PendingFile& output) {
     warn_of_camera_outside(scene, ray_caster, view, options.aspect());
 
     DrawingPlan plan{options.picture};
-    if (!is_solved && options.has_time_limit()) {
+    if (!is_solved && options.has_time_limit()) {  // complete_options() refuses a time limit for a solution file
         PlannedSolution planned = solve_in_time(scene, ray_caster, view, solve_options_for(view, options), options);
         solved.solution = std::move(planned.solution);
         plan = std::move(planned.plan);

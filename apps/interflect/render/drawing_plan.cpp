@@ -17,7 +17,8 @@ namespace {
 
 constexpr double shortest_time = 1e-3;  // [s]; replaces times that are 0 or negative
 
-/// Returns the time limit of solving [s] that leaves enough time for drawing.
+/// Returns the time limit of solving [s] that leaves enough time for drawing. The clock of the solver stands still
+/// while drawing is planned, so the limit is the time solved so far plus the rest of the remaining time.
 double time_limit_of_solving(const Solution& so_far, const DrawingPlan& plan, const RenderArguments& options) {
     const double left = options.seconds_left();
     const double spent = so_far.iterations.empty() ? 0 : so_far.iterations.back().seconds;
@@ -53,14 +54,15 @@ DrawingPlan plan_drawing(const Scene& scene, const Solution& solution, const Ray
                          const RenderArguments& options) {
     DrawingPlan plan{options.picture};
     if (traces_paths(plan.picture.shading)) {
-        // Layers and error images need path tracing of all pixels, however long it takes.
+        // Layers and error images need at least the fewest samples of all pixels, however long these take
         const bool needs_all_pixels = options.path.has_path_outputs();
         const double limit =
             needs_all_pixels ? std::numeric_limits<double>::infinity() : largest_drawing_share * options.seconds_left();
         plan.predicted =
             predict_time_of_paths(scene, solution, ray_caster, view, plan.picture, options.path.denoise, limit);
         const double predicted = plan.predicted->total();
-        const double left_for_drawing = largest_drawing_share * options.seconds_left();  // less than before predicting
+        // The prediction has taken time, so less is left now
+        const double left_for_drawing = largest_drawing_share * options.seconds_left();
         if (plan.reduction() > 1) warn_of_reduction(plan.reduction());
         if (predicted <= left_for_drawing) return plan;
         if (plan.picture.shading == Shading::hybrid || needs_all_pixels) {
@@ -79,7 +81,7 @@ void limit_drawing(DrawingPlan& plan, const RenderArguments& options) {
     if (!plan.predicted || plan.reduction() > 1) return;
     PictureOptions& picture = plan.picture;
     picture.time = std::max(shortest_time, options.seconds_left() - plan.predicted->finishing);
-    // The time limits the number of samples, and so does --samples if given
+    // Both the time and, if given, --samples limit the number of samples
     if (!options.has_default_samples) picture.max_samples = picture.samples;
     if (picture.shading == Shading::hybrid)
         picture.samples = std::min(picture.samples, plan.predicted->samples_within(picture.time));
@@ -101,10 +103,10 @@ PlannedSolution solve_in_time(const Scene& scene, const RayCaster& ray_caster, c
     };
     Solution solution = run_solve(scene, ray_caster, solve_options, options.solver.memory, /*checkpoints=*/{},
                                   {.after = seconds_to_plan, .use = plan_and_limit});
-    // A short run may end before it is planned. Other shadings than by paths are then drawn without a limit
-    const bool ended_without_plan = !plan.predicted && !is_stop_requested();
-    if (ended_without_plan && traces_paths(options.picture.shading))
-        plan = plan_drawing(scene, solution, ray_caster, view, options);
+    // A short run may end before drawing is planned. After a signal, no paths are traced, so no plan is needed.
+    // For shadings without paths, `predicted` remains empty, and limit_drawing() does nothing.
+    const bool needs_plan = !plan.predicted && traces_paths(options.picture.shading) && !is_stop_requested();
+    if (needs_plan) plan = plan_drawing(scene, solution, ray_caster, view, options);
     limit_drawing(plan, options);
     return {std::move(solution), std::move(plan)};
 }

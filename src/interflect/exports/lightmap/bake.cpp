@@ -103,12 +103,11 @@ class LightmapTexels {
             texels_inside_ += places[i].is_inside;
             if (!places[i].is_evaluated) continue;
             grid.points[i] = static_cast<std::uint32_t>(points_.size());
-            const BakedPoint& point = places[i];
-            points_.push_back(point);
+            points_.push_back(static_cast<const BakedPoint&>(places[i]));  // without the flags of TexelPlace
         }
-        const std::vector<std::size_t> evaluated = copied_texels(places, static_cast<std::size_t>(columns));
+        const std::vector<std::size_t> source_texels = copied_texels(places, static_cast<std::size_t>(columns));
         for (std::size_t i = 0; i < places.size(); ++i)
-            texels_.push_back({position_in_image(chart, i, columns), grid.points[evaluated[i]]});
+            texels_.push_back({position_in_image(chart, i, columns), grid.points[source_texels[i]]});
         grids_.push_back(std::move(grid));
     }
     /// Assigns the nearest evaluated point in space to each texel of hidden charts. Requires that all charts are added.
@@ -162,7 +161,7 @@ void add_images(const std::vector<Image>& images, std::vector<Image>& sum) {
         for (std::size_t i = 0; i < sum[page].pixels.size(); ++i) sum[page].pixels[i] += images[page].pixels[i];
 }
 
-/// Evaluates each light group alone. The lightmap is their sum, including the noise.
+/// Evaluates each light group alone. The lightmap is the exact sum of the images of all groups.
 void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Solution& solution,
                      const ExportOptions& options, BakedImages& baked) {
     Ranks* const ranks = options.monitor.ranks;
@@ -172,12 +171,13 @@ void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Sol
         const auto fraction = [&](std::size_t i) { return static_cast<double>(i) / static_cast<double>(count); };
         const Monitor monitor = monitor_section(options.monitor, fraction(g), fraction(g + 1));
         baked.groups.push_back(baked.images);  // these images are black until all groups are evaluated
-        // The other ranks make the same scene and solution, and share their light until end_shared_light()
+        // The other ranks make the same scene and solution, and trace a share of the rays until end_shared_light()
         give_order(ranks, {.kind = LightOrder::Kind::group, .group = g});
         try {
             texels.evaluate(group.scene, BakedLight(group.scene, group.solution, options.bake, texel_sampling), monitor,
                             baked.groups.back());
-        } catch (const Stopped&) {  // of all ranks; after another error, the caller must end them (Ranks::abort())
+        } catch (const Stopped&) {
+            // All ranks have stopped. After another error, the caller must end the other ranks (Ranks::abort())
             end_shared_light(ranks);
             throw;
         }
@@ -207,7 +207,7 @@ double texels_of_images(std::span<const Imath::V2i> sizes) {
 
 /// Returns the memory for the light of one texel of a chart [bytes].
 double light_bytes(Shading shading) {
-    // Hybrid shading traces tiles of gauges, so it keeps no statistics of all texels
+    // Hybrid shading needs no path_bytes_per_pixel: it traces tiles of gauges and keeps only their light
     if (shading == Shading::hybrid) return sizeof(SurfacePoint) + sizeof(Gauge) + sizeof(GaugeLight) + sizeof(Rgb);
     if (shading == Shading::gather)
         return path_bytes_per_pixel + sizeof(MeasuringPoint) + sizeof(Gauge) + sizeof(MeasuredIrradiance);

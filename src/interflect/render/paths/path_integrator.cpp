@@ -11,16 +11,17 @@
 #include "interflect/render/paths/sky_guide.h"
 #include "interflect/render/reflections/known_light.h"
 
+// path_reflections.cpp defines the functions for known light and virtual lights.
 namespace interflect::detail {
 
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 
-/// In hybrid shading, one in four paths continues from its first point to find light sources. Close to a source,
-/// sampled directions have less variance than shadow rays.
+/// In hybrid shading, one in four paths continues from a first point with a record, to find light sources. Close to a
+/// source, sampled directions have less variance than shadow rays.
 constexpr std::uint32_t paths_per_direction = 4;
-/// Separates the random number that selects these paths from other uses of a path's key.
+/// Separates the random number that selects these paths from other uses of the key of a half batch.
 constexpr std::uint64_t selection_stream = 2;
 /// Paths of a smaller throughput are subject to Russian roulette. Lower thresholds reduce variance but lengthen paths;
 /// values from 0.25 to 1 are equally efficient.
@@ -146,7 +147,8 @@ bool PathIntegrator::move_to_hit(const Hit& hit, const Ray& ray, Path& path) {
         const Rgb& irradiance = plan_.known->irradiance(plan_.known->place(surface.patch, surface.x));
         add_prediction(path, surface.exitance / pi, surface.reflectance * irradiance / pi);
     }
-    if (path.sampling.ends_at_next_hit || end_at_known_light(surface, path)) return false;
+    if (path.sampling.ends_at_next_hit) return false;
+    if (end_at_known_light(surface, path)) return false;  // has added the known light
     // Virtual lights have already contributed a part of the light from this surface
     if (plan_.virtual_lights && vertex_ > 1) path.throughput *= share_beyond_virtual_lights(surface, path);
     path.throughput *= surface.reflectance;
@@ -172,8 +174,8 @@ PathIntegrator::SurfaceHit PathIntegrator::surface_hit(const Hit& hit, const Ray
 
 void PathIntegrator::record_first_hit(const SurfaceHit& hit, const Path& path) {
     FirstHit& first_hit = first_hits_[path.sample];
-    // find_surfaces() appends the paths behind panes and in mirrors, so their hits are recorded later. If the pane is
-    // clear or the mirror pure, sets_first_hit remains set, and the later hit replaces its hit.
+    // The hits of paths behind panes and in mirrors are recorded later. They replace the hit of a clear pane or pure
+    // mirror. If the pane or mirror also reflects diffusely, find_surfaces() has cleared sets_first_hit of these paths.
     if (vertex_ == 1 && path.sets_first_hit) {
         first_hit = {.albedo = RgbD(hit.reflectance),
                      .normal = Imath::V3d(plan_.scene.geometry[hit.patch].normal()),
@@ -183,7 +185,7 @@ void PathIntegrator::record_first_hit(const SurfaceHit& hit, const Path& path) {
             first_hit.level = path.level_samples * static_cast<double>(plan_.known->element_level(hit.patch, hit.x));
     }
     const bool is_first_of_gauge = vertex_ == 2 && !plan_.start.camera;  // the gauge is vertex 1
-    if (is_first_of_gauge) {
+    if (is_first_of_gauge) {  // behind panes, the farthest hit remains, without regard to sets_first_hit
         first_hit.inverse_length = 1 / static_cast<double>(hit.distance);
         first_hit.hits = 1;
     }
@@ -193,7 +195,7 @@ void PathIntegrator::add_sky(const Path& path, const V3f& direction) {
     const Skies& skies = plan_.sources().skies();
     if (vertex_ == 1) {
         const Rgb visible_radiance = skies.radiance_with_suns(direction);
-        add_prediction(path, visible_radiance, Rgb(0));
+        add_prediction(path, visible_radiance, Rgb(0));  // adds the square; only hybrid shading reads it
         add(path.half_batch, 0, path.throughput * visible_radiance);
         return;
     }
@@ -232,7 +234,7 @@ void PathIntegrator::illuminate_vertices() {
     for (Path& path : paths_.paths) {
         path.sampling = {};
         if (vertex_ == 1) path.sampling.rays = plan_.first_shadow_rays;
-        // A record contains the indirect light, so its path needs no further connections
+        // With a record, light_first_point() adds the indirect light and connects the path to the sources
         if (vertex_ == 1 && plan_.hybrid && light_first_point(path)) continue;
         if (vertex_ > 1 || plan_.has_direct) connect_to_sources(path, none);
         if (plan_.known) connect_to_known_light(path);
@@ -310,14 +312,15 @@ void PathIntegrator::connect_to_sky(const Path& path, std::uint32_t index) {
     if (!(cosine > 0 && density > 0)) return;
     const float weight = balance(density, direction_density(path, direction));
     const Rgb radiance = path.throughput * sampled_sky(path, direction) * (cosine / pi / density * weight);
-    shadow_rays_.add({path.position, direction}, no_patch, std::numeric_limits<float>::infinity());
+    shadow_rays_.add({path.position, direction}, /*patch=*/no_patch, std::numeric_limits<float>::infinity());
     connections_.push_back({.half_batch = path.half_batch, .bounces = vertex_, .light = radiance});
 }
 
 V3f PathIntegrator::sample_sky_direction(const Path& path, std::uint32_t index) const {
     const Skies& skies = plan_.sources().skies();
     const bool has_guide = path.sampling.guide != none;
-    // If both can sample the sky, even shadow rays follow the guide and odd ones the brightness of the sky.
+    // If both can sample the sky, rays of even index follow the guide. Rays of odd index follow the brightness
+    // of the sky.
     const bool alternates = has_guide && skies.can_sample();
     const bool is_guided = alternates ? index % 2 == 0 : has_guide;
     const std::uint32_t index_in_stream = alternates ? index / 2 : index;
@@ -369,8 +372,9 @@ void PathIntegrator::choose_directions() {
             // probability
             const std::uint64_t offset = mix(key, selection_stream);
             const bool is_selected = (path.index_in_sequence + offset) % paths_per_direction == 0;
-            if (!(path.sampling.directions > 0) || !is_selected) continue;
-            path.throughput /= path.sampling.directions;
+            const float probability = path.sampling.directions;  // 0 if no source needs sampled directions
+            if (!(probability > 0) || !is_selected) continue;
+            path.throughput /= probability;
         }
         const VertexSample sample = vertex_sample(key, vertex_, path.index_in_sequence);
         const float survival = std::min(1.0f, largest_channel(path.throughput) / roulette_threshold);

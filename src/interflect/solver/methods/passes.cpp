@@ -1,6 +1,7 @@
 #include "interflect/solver/methods/passes.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -22,9 +23,9 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum number of rays of a run with a preparation: one for importance, two for the passes of prepare(), and one for
-/// an iteration.
-constexpr std::int64_t fewest_rays_with_preparation = 4;
+/// Minimum number of rays of a run that makes an initial mesh: one for importance, one for each of the two passes of
+/// make_initial_mesh(), and one for an iteration.
+constexpr std::int64_t fewest_rays_with_initial_mesh = 4;
 
 Estimate zero_estimate(const RunInputs& inputs, const LightState& light) {
     const std::vector<Rgb> dark(light.forest->size(), Rgb(0));
@@ -73,8 +74,8 @@ void count_rays(RayTotals& totals, std::int64_t rays, bool carries_importance, d
     totals.power += rays - importance_rays;
 }
 
-/// Returns whether the oracle refines the mesh during iterations. make_initial_mesh() does not depend on it, because
-/// the variance is unknown there.
+/// Returns whether the oracle refines the mesh during iterations. The initial mesh always needs the oracle, because the
+/// variance is unknown there.
 bool oracle_refines_in_iterations(const LightState& light) {
     return light.options().method.refines && !refines_by_variance(light.options());
 }
@@ -117,9 +118,9 @@ struct Passes::Pass {
     void add_bounce(Received received, bool keeps_direct);
 };
 
-/// Returns the power that a bounce shoots, relative to the first bounce: beta p + (1 - beta) w. Here p is the ratio of
-/// the powers and w the ratio of the importance-weighted powers. The share beta of the rays ignores importance. Returns
-/// p if the weighted power of the first bounce is 0.
+/// Returns the power that a bounce shoots, relative to the first bounce: beta p + (1 - beta) w. The share beta of the
+/// rays ignores importance, so it follows the ratio p of the powers. The others follow the ratio w of the
+/// importance-weighted powers. Returns p if the weighted power of the first bounce is 0.
 double Passes::Pass::relative_unshot(const PowerPlan& bounce, double beta) const {
     const double power = first_power > 0 ? bounce.power / first_power : 0;
     if (!(first_weighted_power > 0)) return power;
@@ -132,18 +133,18 @@ TransportStep Passes::Pass::make_step(const SolverState& state, RayPlan plan) {
     step.groups = group_radiosity(state.inputs, state.light, unshot_groups, emits);
     step.start_points = &start_points;
     step.oracle_light = Radiosity(state.inputs.materials, state.light.solution.irradiance);
-    step.completes_by_walks = budget.has_planned_last_bounce();
+    step.completes_by_walks = budget.has_planned_last_bounce();  // the planned bounce is that of this step
     step.reflecting_where_received = reflecting_where_received;
     step.leaves_only = !oracle_refines;
     const std::int64_t rays_in_mean = state.rays.schedule.averaged_rays() + rays;
     if (oracle_refines)
         step.oracle = make_oracle(state.light.solution, rays_in_mean, state.inputs.element_floor.default_min_area());
-    // Tracing is the last use of these values. Then add_bounce() replaces them.
+    // The step may reuse the memory of `unshot` after tracing, because add_bounce() replaces it
     step.reusable_buffer = &unshot;
     return step;
 }
 
-/// Initialises elements that a bounce has created from their parents.
+/// Initialises the new elements of a bounce with the values of their parents.
 /// @param old_elements  Number of elements before the bounce.
 void Passes::Pass::grow(const ElementForest& forest, std::uint32_t old_elements) {
     if (!sum.irradiance.empty()) {
@@ -157,7 +158,7 @@ void Passes::Pass::grow(const ElementForest& forest, std::uint32_t old_elements)
 
 /// Adds the received light to the sum. The next bounce will shoot it.
 void Passes::Pass::add_bounce(Received received, bool keeps_direct) {
-    // The budget separates the first bounce from random walks, so it contains no indirect light
+    // With keep_direct, the first bounce contains no random walks, and thus no indirect light (BounceBudget)
     if (emits && keeps_direct) sum.direct = received.groups.empty() ? GroupLight{received.irradiance} : received.groups;
     add(sum, received);
     emits = false;
@@ -176,12 +177,12 @@ void Passes::prepare(SolverState& state) {
 void Passes::make_initial_mesh(SolverState& state) {
     // Start from zero: an interrupted preparation may have left an estimate.
     set_estimate(state.light, zero_estimate(state.inputs, state.light));
-    if (state.light.options().limits.rays < fewest_rays_with_preparation) return;
+    if (state.light.options().limits.rays < fewest_rays_with_initial_mesh) return;
     total_unshot_ = 0;
     const bool uses_importance = importance_use(state.light.solution) == ImportanceUse::full;
     const bool refines = state.light.options().method.refines;
-    // With importance and refinement, the importance and the two passes share an eighth of all rays. Otherwise, the
-    // importance or each pass uses an eighth, because runs of 20,000 rays need this number for the initial mesh.
+    // With importance and refinement, the importance and the two passes share an eighth of all rays. Importance alone
+    // uses an eighth. Without importance, each pass uses an eighth, because runs of 20,000 rays need the larger number.
     const std::int64_t sharing_steps = uses_importance && refines ? 3 : 1;
     const std::int64_t rays_per_step = state.rays.schedule.start_rays(sharing_steps);
     if (uses_importance) transport_importance(state, rays_per_step);
@@ -192,7 +193,8 @@ void Passes::make_initial_mesh(SolverState& state) {
         set_estimate(state.light, trace_pass(state, rays_per_step, /*oracle_refines=*/false));
         set_estimate(state.light, trace_pass(state, rays_per_step, /*oracle_refines=*/true));
     }
-    aim_outdoor_light(state);  // again, because passes improve the importance
+    // Aim again with the importance of the passes. Without refinement, new rays only repeat the first sampling
+    aim_outdoor_light(state);
 }
 
 void Passes::update_importance(SolverState& state, TracedIteration& iteration) {
@@ -216,7 +218,8 @@ Estimate Passes::trace(SolverState& state, TracedIteration& iteration) {
     Estimate estimate =
         trace_pass(state, iteration.plan.rays - iteration.importance_rays, oracle_refines_in_iterations(state.light));
     const std::int64_t traced = iteration.importance_rays + rays_so_far(state.rays) - rays_before;
-    // Weights in the mean must be positive, even without light, where no rays are traced.
+    // All rays of an iteration count as its weight, also rays of importance. The weight must be positive, even in
+    // scenes without light, where no rays are traced.
     iteration.rays = std::max<std::int64_t>(1, traced);
     iteration.weight = iteration.rays;
     return estimate;
@@ -285,7 +288,7 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     // Choose the number of rays by the power that is left
     if (!(bounce.power > 0)) return false;
     const BounceRays rays = pass.budget.next(pass.relative_unshot(bounce, experimental.beta));
-    if (rays.expected == 0) return false;
+    assert(rays.expected > 0);  // trace_pass() ends when the budget is spent
     bounce.plan.rays = rays.started;
     // Trace the rays, which may create elements. Random walks reflect those of the last bounce further, so more rays
     // are expected than started. Derived classes trace other bounces in their own way
@@ -296,7 +299,7 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     count_rays(state.rays, rays.expected, carries_importance, experimental.alpha);
     state.sampling.payloads += received.payloads;
     if (carries_importance) {
-        // Merge importance now, because the oracle uses it in the next bounces. Its weight is the number of rays
+        // Merge importance now, because the oracle uses it in the next bounces. Its weight is rays.expected
         const TracedIteration bounce_alone{.plan = {.rays = rays.expected}};
         merge_importance(state.light, state.rays, received.importance, bounce_alone);
     }
@@ -337,6 +340,7 @@ void Passes::archive(StateArchive& archive) {
 
 bool Passes::is_consistent(const SolverState& state) const { return view_change_.is_consistent(state); }
 
+/// Factory of the table of methods (table.cpp): iterations are passes, or single bounces for comparison.
 std::unique_ptr<IterationMethod> make_ray_radiosity(SolverState& state) {
     if (state.light.options().experimental.one_bounce) return std::make_unique<OneBounce>();
     return std::make_unique<Passes>();

@@ -55,10 +55,11 @@ bool has_transparency(const StoredImage& image) {
     return false;
 }
 
-/// Returns the opacity of a pixel of a mask: its alpha, or the mean of red, green and blue. A mask contains no colours,
-/// so its stored values are not decoded from sRGB.
-float mask_opacity(const StoredImage& mask, bool has_alpha, std::size_t pixel) {
-    if (has_alpha) return mask.value(pixel, alpha);
+/// Returns the opacity of a pixel of a mask. A mask contains no colours, so its stored values are not decoded from
+/// sRGB.
+/// @param uses_alpha  Whether the alpha channel is the opacity, else the mean of red, green and blue.
+float mask_opacity(const StoredImage& mask, bool uses_alpha, std::size_t pixel) {
+    if (uses_alpha) return mask.value(pixel, alpha);
     return (mask.value(pixel, 0) + mask.value(pixel, 1) + mask.value(pixel, 2)) / 3;
 }
 
@@ -136,8 +137,7 @@ ObjMaterials::Definition& ObjMaterials::start_definition(const std::string& name
     definition.location = location;
     if (const std::string short_name(name_before_comment(name)); short_name != name) {
         const auto entry = commented_definitions_.try_emplace(short_name, &definition).first;
-        const bool is_ambiguous = entry->second != &definition;  // another definition, or null after two others
-        if (is_ambiguous) entry->second = nullptr;
+        if (entry->second != &definition) entry->second = nullptr;  // several definitions have this short name
     }
     return definition;
 }
@@ -185,7 +185,7 @@ fs::path ObjMaterials::texture_path(std::span<const std::string_view> words, con
     try {
         require_within(path, model_.file.parent_path(), options_, fmt::format("the texture '{}'", name));
     } catch (const ReadFault& fault) {
-        // Location::error() would hide the name of the texture, which the user needs to move the file
+        // Location::error() would hide quoted names (forbids_quotes). But users must know which texture to move.
         throw InputError(
             Fault{.text = fault.what(), .setting = fault.setting, .file = *location.file, .line = location.line});
     }
@@ -282,7 +282,7 @@ void ObjMaterials::warn_of_omitted_keys(const Definition& definition) {
 
 bool ObjMaterials::add_masked_textures(const Definition& definition, Material& material) {
     const StoredImage mask = read_mask(definition);
-    const bool has_alpha = has_transparency(mask);
+    const bool uses_alpha = has_transparency(mask);  // an opaque alpha channel contains no mask
     const bool has_colours =
         !definition.colour_file.empty() && accept_texture(definition.colour_file, colours_key, definition);
     const Texture colours = has_colours ? read_colours(definition) : Texture{"", 1, 1, {Rgb(1)}};
@@ -293,7 +293,7 @@ bool ObjMaterials::add_masked_textures(const Definition& definition, Material& m
     Texture reflectance = of_mask_size, transmittance = of_mask_size, exitance = of_mask_size;
     bool is_reduced = false;
     for (std::size_t i = 0; i < mask.pixel_count(); ++i) {
-        const float opacity = definition.opacity * mask_opacity(mask, has_alpha, i);
+        const float opacity = definition.opacity * mask_opacity(mask, uses_alpha, i);
         Rgb colour = texel_at(colours, texel_centre(of_mask_size, i));
         is_reduced |= largest_channel(colour) > 1;
         for (int c = 0; c < 3; ++c) colour[c] = std::min(colour[c], 1.0f);
@@ -338,9 +338,9 @@ Texture ObjMaterials::read_colours(const Definition& definition) {
         count_decoded(texture.texels.size());
         model_.files.push_back(definition.colour_file.string());
         return texture;
-    } catch (const InputError& unreadable) {
+    } catch (const InputError& error) {  // of the file, or of count_decoded(): this texture exceeds the total
         throw definition.location.error(
-            fmt::format("the texture '{}': {}", definition.colour_file.filename().string(), unreadable.what()));
+            fmt::format("the texture '{}': {}", definition.colour_file.filename().string(), error.what()));
     }
 }
 
@@ -352,9 +352,9 @@ StoredImage ObjMaterials::read_mask(const Definition& definition) {
         count_decoded(mask.pixel_count());
         model_.files.push_back(definition.mask_file.string());
         return mask;
-    } catch (const std::runtime_error& unreadable) {  // InputError of the file, or an error of the decoder
+    } catch (const std::runtime_error& error) {  // of the file, the decoder or count_decoded()
         throw definition.location.error(
-            fmt::format("the texture '{}': {}", definition.mask_file.filename().string(), unreadable.what()));
+            fmt::format("the texture '{}': {}", definition.mask_file.filename().string(), error.what()));
     }
 }
 
