@@ -1,5 +1,5 @@
 // Draws glTF files in headless Chromium: node draw.mjs ENGINE,... WIDTH HEIGHT CAMERA FILE [CAMERA FILE]... An engine is
-// the name of a page, such as three. Writes FILE.CAMERA.ENGINE.png. Prints JSON: {ENGINE: [{meshes, materials, pixels}, ...]},
+// the name of a page: three or babylon. Writes FILE.CAMERA.ENGINE.png. Prints JSON: {ENGINE: [{meshes, materials, pixels}, ...]},
 // pixels [[r, g, b], ...] row by row from the top, of an sRGB display, 0 to 255.
 import { createReadStream, writeFileSync } from "node:fs";
 import { createServer } from "node:http";

@@ -162,6 +162,53 @@ class ThreeTest(PlateTest):
             self.check_picture(f"{file}.{view}.three.png", largest)
 
 
+class EnginesTest(PlateTest):
+    """integrations/babylon: lightmaps in other engines than three.js."""
+
+    ENGINES = ("babylon",)
+    REFLECTANCE, EXPOSURE = 0.02, -7  # light is 25 times white, 3 times the largest value of 8 bits
+    SIZE = WIDTH, HEIGHT = 160, 90
+
+    def edited(self, name, edit):
+        """Returns the plate's file with another material."""
+        plate = json.loads(self.export_plate("hdr").read_text())
+        edit(plate["materials"][0])
+        return self.write(name + ".gltf", json.dumps(plate))
+
+    def plates(self):
+        def make_glossy(material):
+            del material["extensions"]["KHR_materials_specular"]
+
+        def make_metallic(material):
+            make_glossy(material)
+            material["pbrMetallicRoughness"]["metallicFactor"] = 1
+
+        self.plate(self.ABOVE, self.GRAZING)
+        diffuse, glossy = self.export_plate("irradiance"), self.edited("glossy", make_glossy)
+        return [("above", diffuse), ("grazing", diffuse), ("above", glossy), ("above", self.edited("metal", make_metallic))]
+
+    def boxes(self):
+        self.textured()
+        view = self.json("info", "scene.h5")["views"][0]["name"]
+        self.interflect("render", "scene.h5", "--view", view, "--shading", "smooth", "--exposure", self.EXPOSURE,
+                        "--size", "{}x{}".format(*self.SIZE), "-o", "render.png")  # fmt: skip
+        self.interflect("export", "scene.h5", *EXPORTS["irradiance"][0], "--exposure", self.EXPOSURE, "-o", "boxes.glb")
+        return view, self.folder / "boxes.glb"
+
+    # One test, because the start of a browser and of an engine takes longer than the pictures. It fails if a loader drops
+    # pi, the reflectance, the intensity (which contains the exposure), the gain, or the share of light that gloss takes.
+    def test_show_the_radiance(self):
+        plates, (view, boxes) = self.plates(), self.boxes()
+        for engine, drawn in self.draw_with(self.ENGINES, [*plates, (view, boxes)], *self.SIZE).items():
+            with self.subTest(engine):
+                above, grazing, glossy, metal, _ = drawn
+                self.check_radiance(above, "above")
+                self.check_radiance(grazing, "grazing")
+                self.check_radiance(glossy, "gloss, which takes 1.3 to 2.5% here", 0.97, 0.995)
+                self.check_radiance(metal, "metal, which has no diffuse light", -1, 0.01)
+                self.check_picture(f"{boxes}.{view}.{engine}.png", LARGEST_DIFFERENCE["irradiance"])
+
+
 class TransformTest(GltfTest):
     """integrations/gltf-transform in glTF Transform, which drops extensions that it does not know."""
 
