@@ -1,13 +1,13 @@
-// Draws glTF files in headless Chromium: node draw.mjs ENGINE,... WIDTH HEIGHT CAMERA FILE [CAMERA FILE]... An engine is
-// the name of a page: three or babylon. Writes FILE.CAMERA.ENGINE.png. Prints JSON: {ENGINE: [{meshes, materials, pixels}, ...]},
-// pixels [[r, g, b], ...] row by row from the top, of an sRGB display, 0 to 255.
+// Draws glTF files in headless Chromium: node draw.mjs ENGINE,... CAMERA WIDTHxHEIGHT FILE [CAMERA WIDTHxHEIGHT FILE]...
+// An engine is the name of a page: three, babylon or playcanvas. Writes FILE.CAMERA.ENGINE.png. Prints JSON:
+// {ENGINE: [{meshes, materials, pixels}, ...]}, pixels [[r, g, b], ...] row by row from the top, of an sRGB display, 0 to 255.
 import { createReadStream, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { dirname, extname, join, normalize } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
-const [engines, width, height, ...views] = process.argv.slice(2);
+const [engines, ...views] = process.argv.slice(2);
 let file;
 const here = dirname(fileURLToPath(import.meta.url));
 const types = { ".html": "text/html", ".js": "text/javascript", ".mjs": "text/javascript" };
@@ -37,11 +37,11 @@ try {
     await page.goto(`http://127.0.0.1:${server.address().port}/${engine}.html`);
     await page.waitForFunction(() => window.draw);
     pictures[engine] = [];
-    for (let i = 0; i < views.length; i += 2) {
-      const camera = views[i];
-      file = views[i + 1];
+    for (let i = 0; i < views.length; i += 3) {
+      const [camera, size] = views.slice(i);
+      file = views[i + 2];
       const { png, ...drawn } = await page.evaluate(
-        (parameters) => window.draw(...parameters), [`/scene${extname(file)}`, camera, Number(width), Number(height)]);
+        (parameters) => window.draw(...parameters), [`/scene${extname(file)}`, camera, ...size.split("x").map(Number)]);
       writeFileSync(`${file}.${camera}.${engine}.png`, Buffer.from(png.split(",")[1], "base64"));
       pictures[engine].push(drawn);
     }

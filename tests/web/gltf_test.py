@@ -54,13 +54,13 @@ class GltfTest(CommandTest):
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         return result.stdout
 
-    def draw_with(self, engines, views, width, height):
-        """Draws (camera, file) into FILE.CAMERA.ENGINE.png; if modules are missing, run `npm ci --prefix tests/web`."""
+    def draw_with(self, engines, views):
+        """Draws (camera, size, file) into FILE.CAMERA.ENGINE.png; modules are from `npm ci --prefix tests/web`."""
         arguments = [argument for view in views for argument in view]
-        return json.loads(self.run_tool("node", WEB / "draw.mjs", ",".join(engines), width, height, *arguments))
+        return json.loads(self.run_tool("node", WEB / "draw.mjs", ",".join(engines), *arguments))
 
     def draw(self, files, camera, width, height):
-        return self.draw_with(["three"], [(camera, file) for file in files], width, height)["three"]
+        return self.draw_with(["three"], [(camera, f"{width}x{height}", file) for file in files])["three"]
 
     def check_picture(self, picture, largest_difference):
         blocks = self.json("compare", picture, "render.png")["blocks"]
@@ -163,11 +163,11 @@ class ThreeTest(PlateTest):
 
 
 class EnginesTest(PlateTest):
-    """integrations/babylon: lightmaps in other engines than three.js."""
+    """integrations/babylon and integrations/playcanvas: lightmaps in other engines than three.js."""
 
-    ENGINES = ("babylon",)
+    ENGINES = {"babylon": (0.97, 0.995), "playcanvas": (0.955, 0.97)}  # share of diffuse light that gloss leaves
     REFLECTANCE, EXPOSURE = 0.02, -7  # light is 25 times white, 3 times the largest value of 8 bits
-    SIZE = WIDTH, HEIGHT = 160, 90
+    SIZE, PLATE_SIZE = "320x180", "16x16"
 
     def edited(self, name, edit):
         """Returns the plate's file with another material."""
@@ -185,28 +185,30 @@ class EnginesTest(PlateTest):
 
         self.plate(self.ABOVE, self.GRAZING)
         diffuse, glossy = self.export_plate("irradiance"), self.edited("glossy", make_glossy)
-        return [("above", diffuse), ("grazing", diffuse), ("above", glossy), ("above", self.edited("metal", make_metallic))]
+        metal = self.edited("metal", make_metallic)
+        views = ("above", diffuse), ("grazing", diffuse), ("above", glossy), ("above", metal)
+        return [(camera, self.PLATE_SIZE, file) for camera, file in views]
 
     def boxes(self):
         self.textured()
         view = self.json("info", "scene.h5")["views"][0]["name"]
         self.interflect("render", "scene.h5", "--view", view, "--shading", "smooth", "--exposure", self.EXPOSURE,
-                        "--size", "{}x{}".format(*self.SIZE), "-o", "render.png")  # fmt: skip
+                        "--size", self.SIZE, "-o", "render.png")  # fmt: skip
         self.interflect("export", "scene.h5", *EXPORTS["irradiance"][0], "--exposure", self.EXPOSURE, "-o", "boxes.glb")
-        return view, self.folder / "boxes.glb"
+        return view, self.SIZE, self.folder / "boxes.glb"
 
     # One test, because the start of a browser and of an engine takes longer than the pictures. It fails if a loader drops
     # pi, the reflectance, the intensity (which contains the exposure), the gain, or the share of light that gloss takes.
     def test_show_the_radiance(self):
-        plates, (view, boxes) = self.plates(), self.boxes()
-        for engine, drawn in self.draw_with(self.ENGINES, [*plates, (view, boxes)], *self.SIZE).items():
+        plates, boxes = self.plates(), self.boxes()
+        for engine, drawn in self.draw_with(self.ENGINES, [*plates, boxes]).items():
             with self.subTest(engine):
                 above, grazing, glossy, metal, _ = drawn
                 self.check_radiance(above, "above")
                 self.check_radiance(grazing, "grazing")
-                self.check_radiance(glossy, "gloss, which takes 1.3 to 2.5% here", 0.97, 0.995)
+                self.check_radiance(glossy, "gloss, which takes some percent", *self.ENGINES[engine])
                 self.check_radiance(metal, "metal, which has no diffuse light", -1, 0.01)
-                self.check_picture(f"{boxes}.{view}.{engine}.png", LARGEST_DIFFERENCE["irradiance"])
+                self.check_picture(f"{boxes[2]}.{boxes[0]}.{engine}.png", LARGEST_DIFFERENCE["irradiance"])
 
 
 class TransformTest(GltfTest):
