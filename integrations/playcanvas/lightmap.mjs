@@ -97,7 +97,7 @@ function fromSRGB(value) {
   return value <= 0.04045 ? value / 12.92 : ((value + 0.055) / 1.055) ** 2.4;
 }
 
-// The parameters are those of the engine's own chunk. Gloss takes its share of the light, as of the engine's ambient light.
+// The parameters are those of the engine's own chunk. Gloss reduces the light like the engine's ambient light.
 const CHUNKS = {
   [SHADERLANGUAGE_GLSL]: `
     uniform float ${INTENSITY};

@@ -1,4 +1,4 @@
-"""Reads exported glTF with other programs: the Khronos validator, engines in headless Chromium, and Blender."""
+"""Reads exported glTF with other programs: the Khronos validator, engines in Chromium, Godot, and Blender."""
 
 import base64
 import json
@@ -170,11 +170,36 @@ class ThreeTest(PlateTest):
 
 
 class EnginesTest(PlateTest):
-    """integrations/babylon and integrations/playcanvas: lightmaps in other engines than three.js."""
+    """integrations/babylon, playcanvas and godot: lightmaps in other engines than three.js."""
 
     ENGINES = {"babylon": (0.97, 0.995), "playcanvas": (0.955, 0.97)}  # share of diffuse light that gloss leaves
     REFLECTANCE, EXPOSURE = 0.02, -7  # light is 25 times white, 3 times the largest value of 8 bits
     SIZE, PLATE_SIZE = "320x180", "16x16"
+    GODOT_PROJECT = """config_version=4
+[display]
+window/size/width=320
+window/size/height=180
+[rendering]
+environment/default_clear_color=Color(0, 0, 0, 1)
+"""
+    GODOT_IMPORT = """[remap]
+importer="scene"
+type="PackedScene"
+[params]
+nodes/custom_script="res://lightmap_import.gd"
+materials/storage=0
+"""
+    # The editor imports the files of a project when it starts, but does not end by itself. It starts faster with GLES 2.
+    GODOT_COMMANDS = """
+godot3 -e --video-driver GLES2 --disable-render-loop --audio-driver Dummy --path . & editor=$!
+for _ in $(seq 300); do
+  sleep 0.2
+  [ "$(ls .import/*.glb-*.md5 2>/dev/null | wc -l)" = 2 ] && break
+done
+kill $editor
+wait $editor
+exec godot3 --audio-driver Dummy --path . -s draw_in_godot.gd "$@"
+"""
 
     def edited(self, name, edit):
         """Returns the plate's file with another material."""
@@ -197,6 +222,7 @@ class EnginesTest(PlateTest):
         return [(camera, self.PLATE_SIZE, file) for camera, file in views]
 
     def boxes(self):
+        """Renders and exports textured boxes."""
         self.textured()
         view = self.json("info", "scene.h5")["views"][0]["name"]
         self.interflect("render", "scene.h5", "--view", view, "--shading", "smooth", "--exposure", self.EXPOSURE,
@@ -204,17 +230,32 @@ class EnginesTest(PlateTest):
         self.interflect("export", "scene.h5", *EXPORTS["irradiance"][0], "--exposure", self.EXPOSURE, "-o", "boxes.glb")
         return view, self.SIZE, self.folder / "boxes.glb"
 
+    def draw_with_godot(self, *views):
+        """Draws with Debian's Godot 3, in the project's size, on a virtual screen: without one it imports no materials."""
+        self.write("project.godot", self.GODOT_PROJECT)
+        shutil.copy(ROOT / "integrations" / "godot" / "lightmap_import.gd", self.folder)
+        shutil.copy(WEB / "draw_in_godot.gd", self.folder)
+        for file in {file.name for _, _, file in views}:
+            self.write(file + ".import", self.GODOT_IMPORT)
+        plain = {"HOME": str(self.folder), "PATH": "/usr/bin:/bin", "LANG": "C.UTF-8"}
+        arguments = [f"{file.name}:{camera}" for camera, _, file in views]
+        output = self.run_tool("xvfb-run", "-a", "bash", "-c", self.GODOT_COMMANDS, "bash", *arguments, env=plain)
+        return [{"pixels": [json.loads(line[6:])]} for line in output.splitlines() if line.startswith("DRAWN ")]
+
     # One test, because the start of a browser and of an engine takes longer than the pictures. It fails if a loader drops
     # pi, the reflectance, the intensity (which contains the exposure), the gain, or the share of light that gloss takes.
     def test_show_the_radiance(self):
         plates, boxes = self.plates(), self.boxes()
-        for engine, drawn in self.draw_with(self.ENGINES, [*plates, boxes]).items():
+        pictures = self.draw_with(self.ENGINES, [*plates, boxes])
+        pictures["godot"] = self.draw_with_godot(*plates[:2], boxes)
+        for engine, (above, grazing, *others) in pictures.items():
             with self.subTest(engine):
-                above, grazing, glossy, metal, _ = drawn
                 self.check_radiance(above, "above")
                 self.check_radiance(grazing, "grazing")
-                self.check_radiance(glossy, "gloss, which takes some percent", *self.ENGINES[engine])
-                self.check_radiance(metal, "metal, which has no diffuse light", -1, 0.01)
+                if engine in self.ENGINES:
+                    glossy, metal, _ = others
+                    self.check_radiance(glossy, "gloss, which takes some percent", *self.ENGINES[engine])
+                    self.check_radiance(metal, "metal, which has no diffuse light", -1, 0.01)
                 self.check_picture(f"{boxes[2]}.{boxes[0]}.{engine}.png", LARGEST_DIFFERENCE["irradiance"])
 
 
