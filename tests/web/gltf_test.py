@@ -192,7 +192,7 @@ materials/storage=0
     # The editor imports the files of a project when it starts, but does not end by itself. It starts faster with GLES 2.
     GODOT_COMMANDS = """
 godot3 -e --video-driver GLES2 --disable-render-loop --audio-driver Dummy --path . & editor=$!
-for _ in $(seq 300); do
+for _ in $(seq 600); do
   sleep 0.2
   [ "$(ls .import/*.glb-*.md5 2>/dev/null | wc -l)" = 2 ] && break
 done
