@@ -161,8 +161,8 @@ struct ViewCoverage {
 /// Returns a view for a scene without views. The view from the corner, overview() of scene.h, is kept if it shows a lit
 /// interior. Otherwise, the view is from a lit room. Eyes are rated by the share of lit surfaces and by their distance;
 /// the best one looks where most of them are, from up to 4 m farther back. Without a lit room, the view from the corner
-/// is replaced only if it shows no light. At most 128 eyes are sampled, above faces that face upwards, with 20 rays each.
-/// A surface is lit if it emits or if a random path of at most six reflections finds a source or the sky.
+/// is replaced only if it shows no light. At most 128 eyes are sampled, above faces that face upwards, with 20 rays
+/// each. A surface is lit if it emits or if a random path of at most six reflections finds a source or the sky.
 /// @return  "overview", with the probable up axis of validate_setup(), else z; the same for any number of threads.
 /// Cost: about 50,000 rays, and O(n) for n patches.
 /// @throws InputError for a ray caster of another scene.

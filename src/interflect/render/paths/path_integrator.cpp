@@ -83,7 +83,8 @@ void PathIntegrator::start_at_camera(std::span<const SampleBatch> batches) {
         fill_points(PointSet::sobol, keys_[h], batch.first_index, batch.half_size, points);
         const auto& x_in_pixel = points.coordinate[0];
         const auto& y_in_pixel = points.coordinate[1];
-        const auto column = static_cast<float>(batch.pixel % width), row = static_cast<float>(batch.pixel / width);
+        const std::uint32_t row_index = batch.pixel / width;
+        const auto column = static_cast<float>(batch.pixel % width), row = static_cast<float>(row_index);
         path.half_batch = h;
         path.sampling.ends_at_next_hit = batch.ends_at_first_hit;
         for (std::uint32_t i = 0; i < batch.half_size; ++i, ++path.sample) {
