@@ -106,7 +106,7 @@ void render_solution(const RenderArguments& options, PendingFile& output) {
     if (!is_solved && options.has_time_limit()) {  // complete_options() refuses a time limit for a solution file
         PlannedSolution planned = solve_in_time(scene, ray_caster, view, solve_options_for(view, options), options);
         solved.solution = std::move(planned.solution);
-        plan = std::move(planned.plan);
+        plan = planned.plan;
     } else {
         if (!is_solved)
             solved.solution = solve_with_previews(scene, ray_caster, view, solve_options_for(view, options), options);

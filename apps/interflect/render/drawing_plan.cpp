@@ -108,7 +108,7 @@ PlannedSolution solve_in_time(const Scene& scene, const RayCaster& ray_caster, c
     const bool needs_plan = !plan.predicted && traces_paths(options.picture.shading) && !is_stop_requested();
     if (needs_plan) plan = plan_drawing(scene, solution, ray_caster, view, options);
     limit_drawing(plan, options);
-    return {std::move(solution), std::move(plan)};
+    return {std::move(solution), plan};
 }
 
 }  // namespace interflect::command
