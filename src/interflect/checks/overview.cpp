@@ -184,6 +184,7 @@ RatedEye step_back(const LitSights& sights, const RatedEye& eye, const V3f& dire
     const float distance = std::min(behind.distance - clearance, far_enough);
     if (!behind.meets_front || distance <= 0) return eye;
     std::vector<V3f> places;
+    places.reserve(shares.size());
     for (const float share : shares) places.push_back(eye.eye - share * distance * direction);
     for (const RatedEye& place : rate(sights, places, many_rays))
         if (condition(place) && place.prospect.lit >= least_relative_lit * eye.prospect.lit) return place;
@@ -214,7 +215,7 @@ std::vector<V3f> picture_directions(const Scene& scene, const View& view) {
 
 View overview(const Scene& scene, const RayCaster& ray_caster) {
     ray_caster.require_made_for(scene);
-    const View from_corner = overview(scene);
+    View from_corner = overview(scene);
     if (scene.patches.empty() || !emits_light(scene) || !view_fault(from_corner).empty()) return from_corner;
 
     // Keep the view from the corner if it shows a lit interior.
