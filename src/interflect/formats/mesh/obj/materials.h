@@ -70,7 +70,7 @@ class ObjMaterials {
     static void read_opacity(std::span<const std::string_view> words, Definition& definition);
     /// Returns the path of a texture. @param words  Options and the file name, which may contain spaces and '#'.
     std::filesystem::path texture_path(std::span<const std::string_view> words, const Location& location);
-    /// Returns null if no library defines the material.
+    /// Returns null if no library defines the material, or if the name matches several.
     Definition* find_definition(const std::string& name);
 
     /// Adds a material to the model. Returns its index.
