@@ -81,16 +81,18 @@ void PathIntegrator::start_at_camera(std::span<const SampleBatch> batches) {
     for (std::uint32_t h = 0; h < keys_.size(); ++h) {
         const SampleBatch& batch = batches[h / 2];
         fill_points(PointSet::sobol, keys_[h], batch.first_index, batch.half_size, points);
-        const auto& x_in_pixel = points.coordinate[0];
-        const auto& y_in_pixel = points.coordinate[1];
+        auto& x_in_pixel = points.coordinate[0];
+        auto& y_in_pixel = points.coordinate[1];
+        const bool is_fixed = batch.tracing == Tracing::fixed_places;
+        if (is_fixed) x_in_pixel[0] = y_in_pixel[0] = h % 2 == 0 ? 0.0f : 0.5f;  // corner or centre
         const std::uint32_t row_index = batch.pixel / width;
         const auto column = static_cast<float>(batch.pixel % width), row = static_cast<float>(row_index);
         path.half_batch = h;
-        path.sampling.ends_at_next_hit = batch.ends_at_first_hit;
+        path.sampling.ends_at_next_hit = batch.tracing != Tracing::paths;
         for (std::uint32_t i = 0; i < batch.half_size; ++i, ++path.sample) {
             path.index_in_sequence = batch.first_index + i;
             // Looking up the level of an element is slow, so the first path of a half batch does it for all of them.
-            path.level_samples = i == 0 ? batch.half_size : 0;
+            path.level_samples = i == 0 && !is_fixed ? batch.half_size : 0;
             paths_.add(path, plan_.start.camera->ray(column + x_in_pixel[i], row + y_in_pixel[i]));
         }
     }

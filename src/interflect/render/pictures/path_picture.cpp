@@ -228,26 +228,46 @@ class PathPicture {
     /// Traces camera rays alone at edges and textures, even if the time is over: they are cheap.
     void add_first_hits() {
         constexpr std::uint32_t number = 1;  // all samples are in batches of number 0
-        const std::vector<std::uint32_t> needed = needed_first_hits(pixels_, options_);
-        std::vector<SampleBatch> chunk;
-        std::size_t rays = 0;
-        for (std::uint32_t i = 0; i < pixels_.size(); ++i) {
-            if (needed[i] == 0) continue;
-            chunk.push_back({.pixel = i, .number = number, .half_size = needed[i], .ends_at_first_hit = true});
-            rays += 2 * std::size_t{needed[i]};
-            if (rays < SharedBatches::paths_at_once(monitor_.ranks)) continue;
-            trace_first_hits(chunk);
-            rays = 0;
-        }
-        if (!chunk.empty()) trace_first_hits(chunk);
+        const std::vector<std::uint32_t> needed = needed_first_hits(pixels_, light_at_places(), options_);
+        trace_first_hits(
+            [&](std::uint32_t i) {
+                return SampleBatch{
+                    .pixel = i, .number = number, .half_size = needed[i], .tracing = Tracing::first_hits};
+            },
+            [this](const SampleBatch& batch) { pixels_[batch.pixel].add_first_hits(batch); });
     }
 
-    void trace_first_hits(std::vector<SampleBatch>& chunk) {
-        counts_ += shared_.trace(
-            chunk, [this] { return stopped(); }, false);
-        for (const SampleBatch& batch : chunk)
-            if (batch.done) pixels_[batch.pixel].add_first_hits(batch);
-        chunk.clear();
+    std::vector<LightAtPlaces> light_at_places() {
+        std::vector<LightAtPlaces> places(pixels_.size());
+        const auto light = [](const PathLight& half) { return mean_channel(half.emitted + half.predicted); };
+        trace_first_hits([](std::uint32_t i) { return SampleBatch{.pixel = i, .tracing = Tracing::fixed_places}; },
+                         [&](const SampleBatch& batch) {
+                             places[batch.pixel] = {light(batch.halves[0]), light(batch.halves[1])};
+                         });
+        return places;
+    }
+
+    /// Traces camera rays to their first hits. @param batch_of  Returns the batch of a pixel, or one without samples.
+    /// @param use  Receives each traced batch.
+    void trace_first_hits(const auto& batch_of, const auto& use) {
+        std::vector<SampleBatch> chunk;
+        std::size_t rays = 0;
+        const auto trace_chunk = [&] {
+            counts_ += shared_.trace(
+                chunk, [this] { return stopped(); }, false);
+            for (const SampleBatch& batch : chunk)
+                if (batch.done) use(batch);
+            chunk.clear();
+            rays = 0;
+        };
+        for (std::uint32_t i = 0; i < pixels_.size(); ++i) {
+            const SampleBatch batch = batch_of(i);
+            if (batch.half_size == 0) continue;
+            chunk.push_back(batch);
+            rays += 2 * std::size_t{batch.half_size};
+            if (rays >= SharedBatches::paths_at_once(monitor_.ranks)) trace_chunk();
+        }
+        if (!chunk.empty()) trace_chunk();
     }
 
     /// Each batch of a pixel uses another set of virtual lights, so the variance of the batches includes the error of

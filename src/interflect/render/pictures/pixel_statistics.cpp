@@ -75,6 +75,22 @@ std::vector<double> error_scale(const std::vector<PixelStatistics>& pixels, cons
     return scale;
 }
 
+/// Returns the variance of the light at the centre and at the corners of a pixel; the last column and the last row have
+/// corners on one side only.
+double variance_of_places(const std::vector<LightAtPlaces>& places, std::size_t pixel, const PictureOptions& options) {
+    const auto width = static_cast<std::size_t>(options.width);
+    const std::size_t right = pixel % width + 1 < width ? 1 : 0, below = pixel + width < places.size() ? width : 0;
+    const std::array<double, 5> light{places[pixel].centre, places[pixel].corner, places[pixel + right].corner,
+                                      places[pixel + below].corner, places[pixel + right + below].corner};
+    double sum = 0, squares = 0;
+    for (const double l : light) {
+        sum += l;
+        squares += l * l;
+    }
+    const double mean = sum / light.size();
+    return std::max(0.0, squares / light.size() - mean * mean);
+}
+
 /// Returns the mean emitted light of each pixel and the eight around it, because the neighbourhood of a small lamp is
 /// much darker than the lamp. The mean is used because a single noisy pixel would hide its own error.
 std::vector<double> lamps_around(const std::vector<PixelStatistics>& pixels, const PictureOptions& options) {
@@ -206,7 +222,7 @@ std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, c
 }
 
 std::vector<std::uint32_t> needed_first_hits(const std::vector<PixelStatistics>& pixels,
-                                             const PictureOptions& options) {
+                                             const std::vector<LightAtPlaces>& places, const PictureOptions& options) {
     // At an edge, the error of a mean of n stratified samples is about their standard deviation times n to the power of
     // -3/4.
     constexpr double exponent = 4.0 / 3;
@@ -227,7 +243,9 @@ std::vector<std::uint32_t> needed_first_hits(const std::vector<PixelStatistics>&
         const double others = count[i] - 1, lamps = (sums_of_lamps[i] - emitted[i]) / others;
         const double relative_to = std::max(scale[i], lamps);
         if (!(relative_to > 0)) continue;
-        const double deviation = std::sqrt(std::max(0.0, sums[i] - variance[i]) / others) / relative_to;
+        const double variance_around = std::max(0.0, sums[i] - variance[i]) / others;
+        const double deviation =
+            std::sqrt(std::max(variance_around, variance_of_places(places, i, options))) / relative_to;
         const double of_half = std::pow(deviation / first_hit_target, exponent) / 2;
         if (of_half > pixels[i].samples_of_half())
             needed[i] = std::bit_ceil(static_cast<std::uint32_t>(std::min(most_first_hits, of_half)));

@@ -74,8 +74,16 @@ double relative_error(const std::vector<PixelStatistics>& pixels, const PictureO
 std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, const PictureOptions& options,
                                    double target);
 
+/// Emitted and predicted light at the first hits of two camera rays of a pixel, mean channel.
+struct LightAtPlaces {
+    double corner = 0, centre = 0;  ///< At the corner that the pixel shares with earlier ones, and at the centre.
+};
+
 /// Returns the number of first hits, in each half, that the edges and textures of each pixel need in addition to its
-/// samples; 0 for most pixels. It is estimated from the pixel's neighbours, as in needed_samples().
-std::vector<std::uint32_t> needed_first_hits(const std::vector<PixelStatistics>& pixels, const PictureOptions& options);
+/// samples; 0 for most pixels. It is estimated from the samples of the pixel's neighbours, as in needed_samples(), and
+/// from `places`, which find edges that all these samples miss.
+/// @param places  Light at fixed places of each pixel, independent of all samples.
+std::vector<std::uint32_t> needed_first_hits(const std::vector<PixelStatistics>& pixels,
+                                             const std::vector<LightAtPlaces>& places, const PictureOptions& options);
 
 }  // namespace interflect::detail

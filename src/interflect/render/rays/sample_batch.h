@@ -58,6 +58,13 @@ struct PathLight {
     }
 };
 
+/// What the samples of a batch trace.
+enum class Tracing : std::uint8_t {
+    paths,         ///< Whole paths.
+    first_hits,    ///< Camera rays that end at their first hit, with emitted and predicted light alone.
+    fixed_places,  ///< The same through the first corner of the pixel (first half) and its centre (second half).
+};
+
 /// Paths of a pixel or gauge: two halves of equal size, whose difference shows the error. They are independent, except
 /// that hybrid shading shares lookups and fits coefficients across them (FirstPoints).
 struct SampleBatch {
@@ -65,8 +72,7 @@ struct SampleBatch {
     std::uint32_t number = 0;       ///< Number of the batch of its pixel. Batches of different numbers are independent.
     std::uint32_t first_index = 0;  ///< Index of the first path in the sequence of each half.
     std::uint32_t half_size = 1;    ///< Number of paths of each half.
-    /// Whether the paths end at their first hit, with emitted and predicted light alone.
-    bool ends_at_first_hit = false;
+    Tracing tracing = Tracing::paths;
     bool done = false;
     std::array<PathLight, 2> halves{};
     FirstHit first{};  ///< Sum of the first hits of all paths.

@@ -19,8 +19,7 @@ RayCounts SharedBatches::trace(std::span<SampleBatch> batches, const std::functi
         broadcast(*ranks_, std::span(&chunk, 1));
         std::vector<Key> keys;
         keys.reserve(batches.size());
-        for (const SampleBatch& b : batches)
-            keys.push_back({b.pixel, b.number, b.first_index, b.half_size, b.ends_at_first_hit});
+        for (const SampleBatch& b : batches) keys.push_back({b.pixel, b.number, b.first_index, b.half_size, b.tracing});
         broadcast(*ranks_, std::span(keys));
     }
     return trace_own(batches, is_over);
@@ -51,7 +50,7 @@ void SharedBatches::help(const StopRequest& time_left) {
         if (chunk.light_set != light_set_) virtual_lights_->renew(light_set_ = chunk.light_set);
         std::vector<SampleBatch> batches;
         batches.reserve(keys.size());
-        for (const Key& k : keys) batches.push_back({k.pixel, k.number, k.first_index, k.size, k.ends_at_first_hit});
+        for (const Key& k : keys) batches.push_back({k.pixel, k.number, k.first_index, k.size, k.tracing});
         trace_own(batches, [&] { return chunk.is_limited && time_left.is_out_of_time(); });
     }
     ranks_->gather({});

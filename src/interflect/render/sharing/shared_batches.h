@@ -49,7 +49,7 @@ class SharedBatches {
     /// Fields of a SampleBatch that other ranks need to trace it.
     struct Key {
         std::uint32_t pixel, number, first_index, size;
-        bool ends_at_first_hit;
+        Tracing tracing;
     };
     /// Header of the message to the other ranks.
     struct Chunk {
