@@ -69,6 +69,23 @@ TEST_F(MgfTextures, BelongToMaterialsAndCoordinatesToVertices) {
     EXPECT_THAT(scene_faults(scene), testing::IsEmpty());
 }
 
+/// Seen to fail when `rd` alone is limited to 0.99, which darkens all colours by 1%.
+TEST_F(MgfTextures, HaveTheirColoursIfTheReflectanceIsOne) {
+    const auto scene_of = [&](const char* image) {
+        return read(three_vertices + "m paint =\n rd 1\n texture rd " + image + "\nf a b d\n");
+    };
+    const auto warnings = [](const Scene& scene) { return scene.warnings.entries().size(); };
+    const Scene grey = scene_of("image.exr");
+    EXPECT_NEAR(grey.materials[0].reflectance.x, 1, 1e-6);
+    EXPECT_EQ(warnings(grey), 0u);
+    write_image_of(1, "white.exr");
+    const Scene white = scene_of("white.exr");
+    EXPECT_NEAR(white.materials[0].reflectance.x, 0.99, 1e-6);  // times a red texel of 1
+    EXPECT_NEAR(white.materials[0].reflectance.y, 1, 1e-6);
+    EXPECT_EQ(warnings(white), 1u);
+    EXPECT_THAT(scene_faults(white), testing::IsEmpty());
+}
+
 /// Seen to fail when materials that differ only in this are merged.
 TEST_F(MgfTextures, OfTransmittanceMakeHoles) {
     const std::string material = "m fence =\n rd .5\n ts 1 0\n texture rd black.exr\n";

@@ -27,6 +27,19 @@ inline bool limit_reflectance(Rgb& reflectance) {
     return reflectance != given;
 }
 
+/// Limits the product of a reflectance and a texture. A reflectance of 1, which is usual, is reduced by its last bit:
+/// it must be below 1 (Material). Returns whether the product changed. @param largest  Largest texel in each channel.
+inline bool limit_textured_reflectance(Rgb& reflectance, const Rgb& largest) {
+    constexpr float nearly_black = 1e-6f, largest_factor = 1 - 0x1p-24f;
+    bool is_reduced = false;
+    for (int c = 0; c < 3; ++c) {
+        const float limit = static_cast<float>(largest_reflectance) / std::max(largest[c], nearly_black);
+        is_reduced |= reflectance[c] > std::min(limit, 1.0f);
+        reflectance[c] = std::min({reflectance[c], limit, largest_factor});
+    }
+    return is_reduced;
+}
+
 /// Scales transmittance and specular reflectance to conserve energy. Returns whether they changed.
 inline bool limit_sum(Material& material) {
     const float straight = largest_channel(Rgb(material.transmittance + material.specular_reflectance));

@@ -13,7 +13,8 @@ namespace interflect::detail {
 ///
 /// * Surfaces become patches, two per face unless `sides 1`, with shared vertices.
 /// * Colours become linear Rec. 709; MGF's neutral is R = G = B.
-/// * `rd` is limited to 0.99; `ts` ignores roughness. `rs` is a mirror for the camera if its roughness is at most 0.02.
+/// * `rd`, times its texture, is limited to 0.99; `ts` ignores roughness. `rs` is a mirror for the camera if its
+///   roughness is at most 0.02.
 /// * `o` and array copies ("a0", "a1") name objects, joined by dots.
 ///
 /// The time is proportional to the length of the text with its arrays expanded.

@@ -163,7 +163,8 @@ class MgfWriter {
     void define_material(const Material& material) {
         constexpr std::string_view smooth = " 0";  // roughness
         RgbD reflectance(material.reflectance);
-        for (int c = 0; c < 3; ++c) reflectance[c] = std::min(reflectance[c], largest_reflectance);
+        if (material.reflectance_texture == none)  // with a texture, readers limit the product
+            for (int c = 0; c < 3; ++c) reflectance[c] = std::min(reflectance[c], largest_reflectance);
         put_colour("rd", reflectance);
         if (channel_sum(material.specular_reflectance) > 0)
             put_colour("rs", RgbD(material.specular_reflectance), smooth);

@@ -250,19 +250,10 @@ std::uint32_t ObjMaterials::add_material(const std::string& name, const Definiti
 }
 
 bool ObjMaterials::limit_material(Material& material, bool has_mask) const {
-    bool is_reduced = false;
-    if (material.reflectance_texture == none) {
-        is_reduced = limit_reflectance(material.reflectance);
-    } else {
-        // Limit the product. A factor of 1, which is usual, is reduced by its last bit: it must be below 1 (Material).
-        constexpr float nearly_black = 1e-6f, largest_factor = 1 - 0x1p-24f;
-        const Rgb largest = largest_texel(model_.textures[material.reflectance_texture]);
-        for (int c = 0; c < 3; ++c) {
-            const float limit = static_cast<float>(largest_reflectance) / std::max(largest[c], nearly_black);
-            is_reduced |= material.reflectance[c] > std::min(limit, 1.0f);
-            material.reflectance[c] = std::min({material.reflectance[c], limit, largest_factor});
-        }
-    }
+    const std::uint32_t texture = material.reflectance_texture;
+    bool is_reduced = texture == none
+                          ? limit_reflectance(material.reflectance)
+                          : limit_textured_reflectance(material.reflectance, largest_texel(model_.textures[texture]));
     // In each texel of add_masked_textures(), the sum of reflectance and transmittance is at most 1 already.
     if (!has_mask) is_reduced |= limit_sum(material);
     return is_reduced;

@@ -47,10 +47,13 @@ Rgb MgfSceneBuilder::converted(const MgfColour& colour, double luminance, double
     const Rec709Colour result = to_rec709(colour.chromaticity, luminance, largest);
     if (result.out_of_gamut && luminance > 0)
         warn("out-of-gamut", "colour outside Rec. 709 is desaturated, its luminance is kept", where);
-    if (result.too_bright)
-        warn("reflectance-clamped",
-             "diffuse reflectance above 0.99, at least in one colour channel, is reduced to 0.99", where);
+    if (result.too_bright) warn_of_bright_reflectance(where);
     return result.rgb;
+}
+
+void MgfSceneBuilder::warn_of_bright_reflectance(const Location& where) {
+    warn("reflectance-clamped", "diffuse reflectance above 0.99, at least in one colour channel, is reduced to 0.99",
+         where);
 }
 
 std::uint32_t MgfSceneBuilder::texture(const MgfTexture& texture) {
@@ -113,9 +116,11 @@ std::uint32_t MgfSceneBuilder::material(MgfMaterial& material, std::string_view 
     const auto reflected = [&](const MgfColour& colour, double share) {
         return converted(colour, share, largest_reflectance, material.defined);
     };
+    const bool has_texture = !material.rd_texture.path.empty();  // its product with rd is limited, not rd
     const double max_transmitted = material.ts_texture.path.empty() ? largest_reflectance : 1;  // 1 is a hole
     Material result{.name = std::string(name),
-                    .reflectance = reflected(material.rd_colour, material.rd),
+                    .reflectance = has_texture ? converted(material.rd_colour, material.rd, 1, material.defined)
+                                               : reflected(material.rd_colour, material.rd),
                     .exitance = emitted(material.ed_colour, material.ed, material.defined),
                     .reflectance_texture = texture(material.rd_texture),
                     .exitance_texture = texture(material.ed_texture),
@@ -124,6 +129,12 @@ std::uint32_t MgfSceneBuilder::material(MgfMaterial& material, std::string_view 
                     .specular_reflectance = is_mirror(material.rs, material.rs_roughness)
                                                 ? reflected(material.rs_colour, material.rs)
                                                 : Rgb(0)};
+    if (has_texture) {
+        // Texels above 1 stay an error (require_products())
+        Rgb largest = largest_texels_[result.reflectance_texture];
+        for (int c = 0; c < 3; ++c) largest[c] = std::min(largest[c], 1.0f);
+        if (limit_textured_reflectance(result.reflectance, largest)) warn_of_bright_reflectance(material.defined);
+    }
     if (result.transmittance_texture == none && limit_sum(result))
         warn("reflectance-clamped", "more light than arrives would leave this material: rs and ts are reduced",
              material.defined);

@@ -22,6 +22,7 @@ class MgfSceneBuilder {
     MgfSceneBuilder(const std::filesystem::path& file, const ReadOptions& options, const Imath::V3d& origin);
 
     void warn(const std::string& kind, const std::string& message, const Location& where);
+    void warn_of_bright_reflectance(const Location& where);
     void add_file(const std::filesystem::path& file) { scene_.files.push_back(file.string()); }
 
     std::uint64_t patch_count() const { return scene_.patches.size(); }
