@@ -12,8 +12,12 @@
 namespace interflect {
 
 struct PreviewOptions {
-    int reduction = 4;                        ///< Light is traced for one in reduction x reduction pixels; >= 1.
+    /// Light is traced for one in reduction x reduction pixels; at least 1, and need not be whole.
+    double reduction = 4;
     Denoiser denoiser = Denoiser::automatic;  ///< Filter of this light.
+
+    /// Returns the number of camera rays of each pixel, which find its surfaces.
+    int camera_rays() const;
 };
 
 /// Draws a view quickly, for people who wait for a better picture.

@@ -49,7 +49,7 @@ SharedRendering draw(const py::object& lit, const py::object& view, const Pictur
 }
 
 SharedRendering draw_preview(const SharedLight& light, const py::object& view, const PictureOptions& options,
-                             int reduction, const std::string& denoiser, int threads, const py::object& progress) {
+                             double reduction, const std::string& denoiser, int threads, const py::object& progress) {
     const View camera = view_or_overview(*light->scene, *light->ray_caster, view, threads);
     const PreviewOptions preview_options{reduction, find_denoiser(denoiser)};
     name_library_of_pyoidn();

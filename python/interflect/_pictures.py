@@ -77,7 +77,7 @@ def render(lit: LitArgument, view: ViewArgument = None, *, width: int = PICTURE.
 
 
 def preview(lit: _core.Solution, view: ViewArgument = None, *, width: int = PICTURE.width, height: int = PICTURE.height,
-            reduction: int = 4, quantity: str = PICTURE.quantity, denoiser: str = "auto", mirrors: bool = PICTURE.mirrors,
+            reduction: float = 4, quantity: str = PICTURE.quantity, denoiser: str = "auto", mirrors: bool = PICTURE.mirrors,
             seed: int = PICTURE.seed, threads: int = 0, progress: ProgressArgument = None) -> NDArray[np.float32]:
     """Draws a view of a solution in a fraction of the time of render(): float32 (height, width, 3), in its units.
 
@@ -87,7 +87,7 @@ def preview(lit: _core.Solution, view: ViewArgument = None, *, width: int = PICT
     Args:
         lit: Solution.
         view, width, height, quantity, seed, threads, progress: As of render().
-        reduction: Light is traced for one in reduction x reduction pixels.
+        reduction: Light is traced for one in reduction x reduction pixels; at least 1, and need not be whole.
         denoiser: "oidn", "own", or "auto", the first that is found.
         mirrors: Whether the camera sees mirrors.
 

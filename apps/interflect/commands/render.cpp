@@ -81,7 +81,7 @@ Solution solve_with_previews(const Scene& scene, const RayCaster& ray_caster, co
 void write_preview_of_solution(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
                                const RenderArguments& options) {
     if (!traces_paths(options.picture.shading) || is_stop_requested()) return;
-    const int reduction = options.progressive ? usual_reduction / 2 : usual_reduction;
+    const double reduction = options.progressive ? usual_reduction / 2 : usual_reduction;
     write_preview(solved.scene, solved.solution, ray_caster, view, options, reduction);
 }
 

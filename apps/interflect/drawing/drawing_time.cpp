@@ -7,6 +7,7 @@
 
 #include "apps/interflect/processes/shared_light.h"
 #include "apps/interflect/processes/signals.h"
+#include "interflect/preview.h"
 
 namespace interflect::command {
 
@@ -70,16 +71,14 @@ struct PathTimes {
     double exponent = 1;     // TimeGrowth::exponent
 
     /// Predicts the time of the full picture, or of a preview if `reduction` is above 1.
-    DrawingTime predict(int reduction) const {
+    DrawingTime predict(double reduction) const {
         const double small_tracing = std::max(0.0, small.drawing - one_pixel.drawing);
         const double small_filtering = std::max(0.0, small.filtering - one_pixel.filtering);
         const double more_pixels = pixel_ratio / (reduction * reduction);
         const double tracing = sending + one_pixel.drawing + small_tracing * std::pow(more_pixels, exponent);
-        // The surfaces of a preview take two to four camera rays per pixel. The mean ray takes more time than these, so
-        // the smaller number is sufficient.
-        constexpr double rays_per_pixel = 2;
-        const double finding_surfaces =
-            rays_per_pixel * pixels * small_tracing / static_cast<double>(std::max<std::int64_t>(1, small.rays));
+        // A camera ray of a preview, with the interpolation of its light, takes about the time of the mean ray.
+        const double finding_surfaces = PreviewOptions{reduction}.camera_rays() * pixels * small_tracing /
+                                        static_cast<double>(std::max<std::int64_t>(1, small.rays));
         return {.drawing = tracing + (reduction > 1 ? finding_surfaces : 0),
                 .finishing = one_pixel.filtering + more_pixels * small_filtering + writing_time * pixels,
                 .reduction = reduction};
@@ -132,9 +131,10 @@ DrawingTime predict_time_of_paths(const Scene& scene, const Solution& solution, 
                                   const View& view, const PictureOptions& options, std::optional<Denoiser> denoiser,
                                   double limit) {
     const PathTimes times = measure_path_times(scene, solution, ray_caster, view, options, denoiser);
-    const int last_reduction = options.shading == Shading::hybrid ? largest_reduction : 1;
-    int reduction = 1;
-    while (reduction < last_reduction && times.predict(reduction).total() > limit) ++reduction;
+    constexpr double step = 0.25;  // a smaller one changes the time by less than the error of its prediction
+    const double last_reduction = options.shading == Shading::hybrid ? largest_reduction : 1;
+    double reduction = 1;
+    while (reduction < last_reduction && times.predict(reduction).total() > limit) reduction += step;
     return times.predict(reduction);
 }
 

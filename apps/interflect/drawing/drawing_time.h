@@ -19,7 +19,7 @@ struct DrawingTime {
 
     double drawing = 0;    ///< Time with min_samples per pixel if paths are traced [s].
     double finishing = 0;  ///< Time of filtering noise and writing [s].
-    int reduction = 1;     ///< Above 1, the picture is a preview() with this PreviewOptions::reduction.
+    double reduction = 1;  ///< Above 1, the picture is a preview() with this PreviewOptions::reduction.
 
     double total() const { return drawing + finishing; }
     /// Returns the number of samples that hybrid shading can take in every pixel within a time [s]: 2, 4, 6 or 8.
@@ -27,7 +27,7 @@ struct DrawingTime {
 };
 
 /// Largest PreviewOptions::reduction of a predicted preview.
-constexpr int largest_reduction = 4;
+constexpr double largest_reduction = 4;
 
 /// Predicts the time of a picture drawn by paths from the time of a smaller one. The error of the prediction was at
 /// most 25% for hybrid shading of 960 x 540 pixels in three offices and a corridor.

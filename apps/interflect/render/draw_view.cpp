@@ -39,7 +39,7 @@ Picture draw_elements(const SolvedScene& solved, const RayCaster& ray_caster, co
 
 /// Draws a preview as the final picture.
 Picture draw_rough_picture(const SolvedScene& solved, const RayCaster& ray_caster, const View& view,
-                           const PictureOptions& picture_options, int reduction, const RenderArguments& options) {
+                           const PictureOptions& picture_options, double reduction, const RenderArguments& options) {
     DrawingProgress progress;
     const Rendering drawn = draw_preview(solved.scene, solved.solution, ray_caster, view, picture_options, reduction,
                                          options.path.denoise, progress.monitor());

@@ -27,7 +27,7 @@ double time_limit_of_solving(const Solution& so_far, const DrawingPlan& plan, co
     return spent + std::max(shortest_time, left - reserved_for(*plan.predicted, takes_more_samples, left));
 }
 
-void warn_of_reduction(int reduction) {
+void warn_of_reduction(double reduction) {
     spdlog::warn(
         "--time is too short for all pixels: light is traced for one in {} x {}, so small shadows are "
         "blurred; a smaller --size takes less time",

@@ -17,7 +17,7 @@ struct DrawingPlan {
     std::optional<DrawingTime> predicted{};
 
     /// Above 1, a preview is drawn: PreviewOptions::reduction.
-    int reduction() const { return predicted ? predicted->reduction : 1; }
+    double reduction() const { return predicted ? predicted->reduction : 1; }
 };
 
 struct PlannedSolution {

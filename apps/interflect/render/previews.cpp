@@ -34,7 +34,7 @@ PictureOptions quick_options(PictureOptions picture) {
 }
 
 Rendering draw_preview(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
-                       const PictureOptions& picture, int reduction, std::optional<Denoiser> denoiser,
+                       const PictureOptions& picture, double reduction, std::optional<Denoiser> denoiser,
                        const Monitor& monitor) {
     if (picture.shading == Shading::hybrid)
         return preview(scene, solution, ray_caster, view, picture, {reduction, denoiser.value_or(Denoiser::automatic)},
@@ -43,7 +43,7 @@ Rendering draw_preview(const Scene& scene, const Solution& solution, const RayCa
 }
 
 void write_preview(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
-                   const RenderArguments& options, int reduction) {
+                   const RenderArguments& options, double reduction) {
     if (!takes_previews(options)) return;
     const Rendering drawn = draw_preview(scene, solution, ray_caster, view, options.picture, reduction,
                                          options.path.denoise, {{}, &stop_flag()});

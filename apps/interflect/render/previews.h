@@ -14,7 +14,7 @@
 namespace interflect::command {
 
 /// PreviewOptions::reduction, unless --time requires another or --progressive draws the finished light.
-inline constexpr int usual_reduction = 4;
+inline constexpr double usual_reduction = 4;
 
 /// Whether a later picture can replace `output`, which pipes and devices do not permit.
 bool is_replaceable(const std::filesystem::path& output);
@@ -26,13 +26,13 @@ PictureOptions quick_options(PictureOptions picture);
 /// @param reduction  PreviewOptions::reduction of hybrid shading.
 /// @param denoiser   Filter of hybrid shading; automatic if empty.
 Rendering draw_preview(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
-                       const PictureOptions& picture, int reduction, std::optional<Denoiser> denoiser,
+                       const PictureOptions& picture, double reduction, std::optional<Denoiser> denoiser,
                        const Monitor& monitor);
 
 /// Draws a preview of the light and writes it to the output, where a better picture will replace it. Has no effect
 /// unless previews are wanted: always with --progressive, otherwise for large pictures of light without a time limit in
 /// .png and .jpg files.
 void write_preview(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
-                   const RenderArguments& options, int reduction);
+                   const RenderArguments& options, double reduction);
 
 }  // namespace interflect::command

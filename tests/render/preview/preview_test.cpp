@@ -31,7 +31,7 @@ struct Lit {
           ray_caster(scene),
           solution(solve(scene, ray_caster, {.method = find_method("srr"), .limits = {.rays = rays}})) {}
 
-    Image preview(const View& view, const PictureOptions& options, int reduction) const {
+    Image preview(const View& view, const PictureOptions& options, double reduction) const {
         return interflect::preview(scene, solution, ray_caster, view, options, {reduction, Denoiser::own}).image;
     }
     Image picture(const View& view, PictureOptions options) const {
@@ -94,7 +94,7 @@ TEST_P(PreviewOfARoom, IsCloseToThePicture) {
     const Lit lit(furnished_room());
     const PictureOptions options{.width = 160, .height = 90, .quantity = GetParam().quantity};
     const Image reference = lit.picture(into_the_corner, options);
-    for (const auto& [reduction, most] : {std::pair{2, 0.08}, {4, 0.12}}) {
+    for (const auto& [reduction, most] : {std::pair{1.5, 0.08}, {2.0, 0.08}, {4.0, 0.12}}) {
         const Image image = lit.preview(into_the_corner, options, reduction);
         EXPECT_LT(relative_difference(image, reference), most) << reduction;
         EXPECT_NEAR(sum_of(image) / sum_of(reference), 1, 0.02) << reduction;
@@ -116,7 +116,7 @@ TEST(Preview, IsNotShifted) {
     };
     const PictureOptions options{.width = width, .height = height};
     const Imath::V2d expected = centre(lit.picture(view, options));
-    for (const int reduction : {2, 5, 8})
+    for (const double reduction : {1.5, 2.0, 5.0, 8.0})
         EXPECT_LT((centre(lit.preview(view, options, reduction)) - expected).length(), 0.3) << reduction;
 }
 
