@@ -7,6 +7,7 @@
 
 #include "apps/interflect/processes/shared_light.h"
 #include "apps/interflect/processes/signals.h"
+#include "interflect/light_sources.h"
 #include "interflect/preview.h"
 
 namespace interflect::command {
@@ -112,6 +113,14 @@ PathTimes measure_path_times(const Scene& scene, const Solution& solution, const
     times.pixels = pixels_of(options);
     times.pixel_ratio = pixels_of(options) / pixels_of(small_picture);
     times.exponent = growth.exponent;
+    const bool has_sky = std::any_of(scene.luminaires.begin(), scene.luminaires.end(), is_sky);
+    if (options.shading == Shading::hybrid && has_sky) {
+        // Most rays of small pictures search for the sky around the records, whose number grows more slowly
+        const PictureOptions smaller_picture = reduced(small_picture, 4);
+        const double pixels = pixels_of(small_picture) / pixels_of(smaller_picture);
+        const double rays = static_cast<double>(times.small.rays) / static_cast<double>(measure(smaller_picture).rays);
+        if (pixels > 1 && rays > 1) times.exponent = std::min(times.exponent, std::log(rays) / std::log(pixels));
+    }
     return times;
 }
 
