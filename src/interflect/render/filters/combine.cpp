@@ -31,18 +31,18 @@ class SurfaceSmoothing {
     SurfaceSmoothing(const Surfaces& surfaces, int spacing) : surfaces_(surfaces), spacing_(spacing) {
         const std::size_t pixels = pixel_at(0, surfaces.height, surfaces.width);
         std::vector<float> support(pixels);
-        for_pixels(surfaces, [&](std::size_t i, int x, int y) {
-            support[i] = centre;
-            visit_neighbours(x, y, [&](std::size_t k, float share, float steps) {
-                support[i] += share * surfaces_.weight(i, k, steps);
-            });
-        });
         for (std::vector<float>& weights : weights_) weights.resize(pixels);
         for_pixels(surfaces, [&](std::size_t i, int x, int y) {
+            support[i] = centre;
             std::size_t n = 0;
             visit_neighbours(x, y, [&](std::size_t k, float share, float steps) {
-                weights_[n++][i] =
-                    share * surfaces_.weight(i, k, steps) / std::max({support[i], support[k], least_support});
+                support[i] += weights_[n++][i] = share * surfaces_.weight(i, k, steps);
+            });
+        });
+        for_pixels(surfaces, [&](std::size_t i, int x, int y) {
+            std::size_t n = 0;
+            visit_neighbours(x, y, [&](std::size_t k, float, float) {
+                weights_[n++][i] /= std::max({support[i], support[k], least_support});
             });
         });
         kept_.resize(pixels);
