@@ -33,9 +33,22 @@ std::vector<double> of_pixels(const std::vector<PixelStatistics>& pixels, const 
     return values;
 }
 
-double mean_reflected(const std::vector<PixelStatistics>& pixels) {
-    const std::vector<double> reflected = of_pixels(pixels, [](const PixelStatistics& p) { return p.reflected(); });
-    return std::accumulate(reflected.begin(), reflected.end(), 0.0) / static_cast<double>(pixels.size());
+/// Light of all pixels, mean channel.
+struct MeanLight {
+    std::vector<double> all, emitted, reflected;
+};
+
+/// Computes all light at once, because reading the samples of all pixels takes most of the time.
+MeanLight mean_light(const std::vector<PixelStatistics>& pixels) {
+    MeanLight mean;
+    for (std::vector<double>* part : {&mean.all, &mean.emitted, &mean.reflected}) part->resize(pixels.size());
+    parallel_for_indices(pixels.size(), [&](std::size_t i) {
+        const PathLight light = pixels[i].light();
+        mean.all[i] = mean_channel(parts_of(light)[0]);
+        mean.emitted[i] = mean_channel(light.emitted);
+        mean.reflected[i] = mean_channel(light.direct + light.indirect);
+    });
+    return mean;
 }
 
 /// Sums each value over its neighbours in a line. Line j starts at index j line_step; its values are `step` apart.
@@ -64,14 +77,13 @@ std::vector<double> sums_around(std::vector<double> values, const PictureOptions
 /// Returns the light to which the error of each pixel is relative: the mean of its neighbours, at least the mean of the
 /// picture. The pixel itself is left out, because its noisy value would hide errors of rare light and bias the number
 /// of its samples.
-std::vector<double> error_scale(const std::vector<PixelStatistics>& pixels, const PictureOptions& options) {
-    const std::vector<double> light =
-        of_pixels(pixels, [](const PixelStatistics& p) { return mean_channel(p.mean()); });
-    std::vector<double> scale = sums_around(light, options);
-    const std::vector<double> count = sums_around(std::vector<double>(pixels.size(), 1.0), options);
-    const double least = mean_reflected(pixels);
+std::vector<double> error_scale(const MeanLight& light, const PictureOptions& options) {
+    std::vector<double> scale = sums_around(light.all, options);
+    const std::vector<double> count = sums_around(std::vector<double>(scale.size(), 1.0), options);
+    const double least = std::accumulate(light.reflected.begin(), light.reflected.end(), 0.0) /
+                         static_cast<double>(light.reflected.size());
     for (std::size_t i = 0; i < scale.size(); ++i)
-        scale[i] = std::max(least, count[i] > 1 ? (scale[i] - light[i]) / (count[i] - 1) : 0);
+        scale[i] = std::max(least, count[i] > 1 ? (scale[i] - light.all[i]) / (count[i] - 1) : 0);
     return scale;
 }
 
@@ -93,13 +105,11 @@ double variance_of_places(const std::vector<LightAtPlaces>& places, std::size_t 
 
 /// Returns the mean emitted light of each pixel and the eight around it, because the neighbourhood of a small lamp is
 /// much darker than the lamp. The mean is used because a single noisy pixel would hide its own error.
-std::vector<double> lamps_around(const std::vector<PixelStatistics>& pixels, const PictureOptions& options) {
-    std::vector<double> light =
-        of_pixels(pixels, [](const PixelStatistics& p) { return mean_channel(p.light().emitted); });
-    light = sums_around(light, options, radius_of_lamps);
-    const std::vector<double> count = sums_around(std::vector<double>(pixels.size(), 1.0), options, radius_of_lamps);
-    for (std::size_t i = 0; i < light.size(); ++i) light[i] /= count[i];
-    return light;
+std::vector<double> lamps_around(const MeanLight& light, const PictureOptions& options) {
+    std::vector<double> emitted = sums_around(light.emitted, options, radius_of_lamps);
+    const std::vector<double> count = sums_around(std::vector<double>(emitted.size(), 1.0), options, radius_of_lamps);
+    for (std::size_t i = 0; i < emitted.size(); ++i) emitted[i] /= count[i];
+    return emitted;
 }
 
 }  // namespace
@@ -193,7 +203,8 @@ RgbD PixelStatistics::squared_record_error() const {
 double relative_error(const std::vector<PixelStatistics>& pixels, const PictureOptions& options) {
     const auto has_error = [](const PixelStatistics& p) { return p.has_error(); };
     if (!std::all_of(pixels.begin(), pixels.end(), has_error)) return std::numeric_limits<double>::infinity();
-    const std::vector<double> around = error_scale(pixels, options), lamps = lamps_around(pixels, options);
+    const MeanLight light = mean_light(pixels);
+    const std::vector<double> around = error_scale(light, options), lamps = lamps_around(light, options);
     const std::vector<double> squares =
         of_pixels(pixels, [](const PixelStatistics& p) { return mean_channel(p.squared_error()); });
     double sum = 0;
@@ -206,7 +217,7 @@ double relative_error(const std::vector<PixelStatistics>& pixels, const PictureO
 
 std::vector<double> needed_samples(const std::vector<PixelStatistics>& pixels, const PictureOptions& options,
                                    double target) {
-    const std::vector<double> scale = error_scale(pixels, options);
+    const std::vector<double> scale = error_scale(mean_light(pixels), options);
     // Variance of a mean of two samples, one from each half
     const std::vector<double> variance = of_pixels(pixels, [](const PixelStatistics& p) {
         return mean_channel(p.squared_sampling_error()) * p.samples_of_half();
@@ -226,13 +237,13 @@ std::vector<std::uint32_t> needed_first_hits(const std::vector<PixelStatistics>&
     // At an edge, the error of a mean of n stratified samples is about their standard deviation times n to the power of
     // -3/4.
     constexpr double exponent = 4.0 / 3;
-    const std::vector<double> scale = error_scale(pixels, options);
-    const std::vector<double> emitted =
-        of_pixels(pixels, [](const PixelStatistics& p) { return mean_channel(p.light().emitted); });
+    const MeanLight mean = mean_light(pixels);
+    const std::vector<double> scale = error_scale(mean, options);
+    const std::vector<double>& emitted = mean.emitted;
     const std::vector<double> variance = of_pixels(pixels, [](const PixelStatistics& p) {
         const PathLight light = p.light();
-        const double mean = mean_channel(light.emitted + light.predicted);
-        return std::max(0.0, light.square_of_first_hit - mean * mean);
+        const double of_first_hits = mean_channel(light.emitted + light.predicted);
+        return std::max(0.0, light.square_of_first_hit - of_first_hits * of_first_hits);
     });
     const std::vector<double> sums = sums_around(variance, options, radius_of_edges);
     const std::vector<double> sums_of_lamps = sums_around(emitted, options, radius_of_edges);
