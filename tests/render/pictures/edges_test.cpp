@@ -35,8 +35,8 @@ struct Line {
 constexpr Line slanted{0.9397f, 0.3420f, 0};  // 20 degrees
 constexpr Line upright{1, 0, 0.03f};          // covers 3% of the pixels right of the middle
 
-/// A floor with a bright left half and a black right half, which meet at the line. Nothing hides the uniform sky, and
-/// light is reflected at most once.
+/// A floor with a bright left half and a black right half, which meet at the line. The uniform sky is
+/// unoccluded, and light is reflected at most once.
 Scene halves(const Line& line, const Rgb& bright_reflectance, const Rgb& bright_exitance) {
     Scene scene;
     const V3f across(line.cosine * 40, line.sine * 40, 0), along(-line.sine * 40, line.cosine * 40, 0);
@@ -106,8 +106,8 @@ TEST_P(Edges, AreSharpAndHaveTheRightMean) {
     EXPECT_NEAR(found.mean, 0, 4 * found.standard_error_of_mean);
 }
 
-/// Where the bright half covers 3% of a column of pixels, two samples of a pixel and those of its neighbours rarely
-/// find it. Without the rays through the corners of pixels, the root mean square error is 12% of the contrast. The
+/// The bright half covers 3% of a column of pixels. Two samples of a pixel and those of its neighbours rarely hit it.
+/// Without the rays through the corners of pixels, the root mean square error is 12% of the contrast. The
 /// coverage on 64 points an axis is exact to 0.5%, which the mean includes. Probability of a false alarm as above.
 TEST_P(Edges, AreFoundWhereFewSamplesMissThem) {
     const EdgeErrors found = errors_at_edge(halves(upright, GetParam().reflectance, GetParam().exitance), upright, 2);

@@ -58,7 +58,7 @@ struct PathLight {
     }
 };
 
-/// What the samples of a batch trace.
+/// Extent of the paths of a batch.
 enum class Tracing : std::uint8_t {
     paths,         ///< Whole paths.
     first_hits,    ///< Camera rays that end at their first hit, with emitted and predicted light alone.
