@@ -252,7 +252,7 @@ class PathPicture {
     void trace_first_hits(const auto& batch_of, const auto& use) {
         std::vector<SampleBatch> chunk;
         std::size_t rays = 0;
-        const auto trace_chunk = [&] {
+        const auto trace_and_use = [&] {
             counts_ += shared_.trace(
                 chunk, [this] { return stopped(); }, false);
             for (const SampleBatch& batch : chunk)
@@ -265,9 +265,9 @@ class PathPicture {
             if (batch.half_size == 0) continue;
             chunk.push_back(batch);
             rays += 2 * std::size_t{batch.half_size};
-            if (rays >= SharedBatches::paths_at_once(monitor_.ranks)) trace_chunk();
+            if (rays >= SharedBatches::paths_at_once(monitor_.ranks)) trace_and_use();
         }
-        if (!chunk.empty()) trace_chunk();
+        if (!chunk.empty()) trace_and_use();
     }
 
     /// Each batch of a pixel uses another set of virtual lights, so the variance of the batches includes the error of
