@@ -8,6 +8,7 @@ import tempfile
 import unittest
 from contextlib import redirect_stdout
 from pathlib import Path
+from unittest import mock
 
 import interflect as ifl
 import matplotlib
@@ -91,7 +92,9 @@ class OfficePlan(ExampleTest):
 
 class Convergence(ExampleTest):
     def test_error_decreases_with_rays(self):
-        _, table = self.run_script("convergence", "--rays", "200000", "--samples", "64", "--seeds", "1")
+        convergence = importlib.import_module("convergence")
+        with mock.patch.multiple(convergence, WIDTH=80, HEIGHT=45):
+            _, table = self.run_script("convergence", "--rays", "200000", "--samples", "64", "--seeds", "1")
         self.assert_picture("convergence.png")
         variants = {f"{steps}{choice}" for steps in ("si", "ci") for choice in ("", "+dr", "+hi", "+dr+hi")}
         self.assertEqual(set(table), variants)
