@@ -40,7 +40,8 @@ FAULTS = {  # addition to the room: kind, count and first place of the finding
 
 class Validate(CommandTest):
     def findings(self, name, *options):
-        return {finding["kind"]: finding for finding in self.json("validate", name, *options)["findings"]}
+        """It solves for a second, on one thread."""
+        return {finding["kind"]: finding for finding in self.json("validate", name, "--threads", "1", *options)["findings"]}
 
     def write_room(self, added="", base=None):
         self.write("room.mgf", (base or ROOM) + added)
@@ -90,8 +91,9 @@ class Validate(CommandTest):
 
     def test_strict_ends_with_one_where_there_is_a_problem(self):
         self.write_room(panel() + panel())
-        self.assertIn("duplicate-face", self.interflect("validate", "room.mgf", exit_code=DONE).stdout)
-        result = self.interflect("validate", "room.mgf", "--strict", "--places", "0", exit_code=FAILED)
+        self.assertIn("duplicate-face", self.interflect("validate", "room.mgf", "--threads", "1", exit_code=DONE).stdout)
+        strict = ("--strict", "--places", "0", "--threads", "1")
+        result = self.interflect("validate", "room.mgf", *strict, exit_code=FAILED)
         self.assertIn("problem duplicate-face", result.stdout)
         self.assertNotIn("at (", result.stdout)
 
@@ -108,7 +110,7 @@ class Misplaced(CommandTest):
         self.write("lamp.ies", self.LUMINAIRE)
 
     def kinds(self, *arguments):
-        return {finding["kind"] for finding in self.json("validate", "room.mgf", *arguments)["findings"]}
+        return {finding["kind"] for finding in self.json("validate", "room.mgf", "--threads", "1", *arguments)["findings"]}
 
     def warnings(self, *arguments):
         return [line for line in self.interflect(*arguments).stderr.splitlines() if line.startswith("warning: ")]
