@@ -14,8 +14,8 @@ from command import ROOT, SOLVED, VIEWS, CommandTest, room
 SMALL = "--size 32x18"
 LESS_WORK = {
     r"--rays \d+M": "--rays 20k",
-    r"--time \d+": "--time 0.5",
-    r"--until \d+%": "--until 30%",
+    r"--time \d+": "--time 0.2",
+    r"--until \d+%": "--until 50%",
     r"--size \d+x\d+": SMALL,
     r"--texels-per-metre \d+": "--texels-per-metre 2",
 }
