@@ -44,10 +44,11 @@ class GltfTest(CommandTest):
         self.interflect("make-scene", "boxes", "--texture", "-o", "boxes.mgf")
         self.write_solution("scene.h5", "boxes.mgf", "--rays", "500k")
 
-    def export(self, name, *more):
+    def export(self, name, *more, prefix=""):
         options, extension = EXPORTS[name]
-        self.interflect("export", "scene.h5", *options, *more, "-o", name + extension)
-        return self.folder / (name + extension)
+        file = prefix + name + extension
+        self.interflect("export", "scene.h5", *options, *more, "-o", file)
+        return self.folder / file
 
     def run_tool(self, *command, **options):
         result = subprocess.run(
@@ -310,26 +311,25 @@ class EdgesTest(GltfTest):
             for x in range(2, self.WIDTH - 2)
         )
 
-    def check_edges(self, sides):
-        self.solved(self.slabs(sides), "--rays", "4M", "--min-area", "0.01", views=(self.VIEW,))
-        names = ("vertices", "irradiance")
-        files = [self.export(name, "--exposure", "-9") for name in names]
-        for name, drawn in zip(names, self.draw(files, "camera", *self.SIZE), strict=True):
-            self.assertEqual(self.dips(drawn["pixels"]), 0, name)
-
     # Before encased patches were omitted, 155 and 430 pixels of the picture of the vertices were dark.
-    def test_no_dark_lines_along_the_edges_of_one_sided_walls(self):
-        self.check_edges(1)
-
-    def test_no_dark_lines_along_the_edges_of_two_sided_walls(self):
-        self.check_edges(2)
+    def test_no_dark_lines_along_the_edges_of_one_sided_and_two_sided_walls(self):
+        files = []
+        for sides in (1, 2):
+            self.solved(self.slabs(sides), "--rays", "4M", "--min-area", "0.01", views=(self.VIEW,))
+            files += [self.export(name, "--exposure", "-9", prefix=f"{sides}-") for name in ("vertices", "irradiance")]
+        for file, drawn in zip(files, self.draw(files, "camera", *self.SIZE), strict=True):
+            self.assertEqual(self.dips(drawn["pixels"]), 0, file.name)
 
 
 class BlenderTest(GltfTest):
-    def test_loads_every_export(self):
+    # One test, because Blender takes longer to start than to import.
+    def test_loads_every_export_with_what_the_file_has(self):
         self.solved(room())
         files = [self.export(name, *FEW.get(name, ())) for name in EXPORTS]
-        for name, imported in zip(EXPORTS, self.import_to_blender(*files), strict=True):
+        self.textured()
+        textured = [self.export(name, prefix="textured-") for name in ("vertices", "irradiance")]
+        *of_room, with_colours, with_lightmap = self.import_to_blender(*files, *textured)
+        for name, imported in zip(EXPORTS, of_room, strict=True):
             with self.subTest(name):
                 # A material has a copy for each image of the lightmap: "paint.001".
                 self.assertEqual({m.split(".")[0] for m in imported["materials"]}, {"lamp", "paint"})
@@ -337,10 +337,6 @@ class BlenderTest(GltfTest):
                 self.assertGreaterEqual(imported["triangles"], 12)
                 for found, expected in zip(imported["low"] + imported["high"], [0, 0, 0, 2, 3, 2.5]):
                     self.assertAlmostEqual(found, expected, places=5)
-
-    def test_has_what_the_file_has(self):
-        self.textured()
-        with_colours, with_lightmap = self.import_to_blender(self.export("vertices"), self.export("irradiance"))
         self.assertEqual(with_colours["colours"], ["Col"])
         self.assertEqual(with_lightmap["uv_maps"], ["UVMap", "UVMap.001"])
 
