@@ -15,9 +15,10 @@ INSIDE = Path(__file__).with_name("inside_blender.py")
 BPY = os.environ.get("INTERFLECT_BPY")
 BLENDER = [BPY] if BPY else ["blender", "-b", "--factory-startup", "--python-exit-code", "1", "--python"]
 
-TOGETHER = (
+CASES = (
     *("vertex", "lightmap", "sheets_vertex", "sheets_lightmap", "sheets_magnified", "moves", "three_vertex", "three_lightmaps"),
     *("visibility", "user", "scenes", "instances", "panels", "plain_world", "hdri_world", "warnings", "failures", "authored"),
+    *("cancel", "disable"),
 )
 
 
@@ -25,15 +26,12 @@ class Addon(unittest.TestCase):
     together: dict = {}  # results of the cases that share a Blender
 
     def blender(self, case: str) -> dict:
-        """Returns the results of a case. The cases of TOGETHER share one Blender, because each start takes a second."""
-        if case not in TOGETHER:
-            found = self.run_blender(case)
-        else:
-            if not self.together:
-                self.together.update(self.run_blender(*TOGETHER))
-            found = self.together
-        self.assertNotIn("error", found[case], found[case].get("error"))
-        return found[case]
+        """Returns the results of a case. All share one Blender, because each start takes a second."""
+        if not self.together:
+            self.together.update(self.run_blender(*CASES))
+        found = self.together[case]
+        self.assertNotIn("error", found, found.get("error"))
+        return found
 
     def run_blender(self, *cases: str, command: str = os.environ["INTERFLECT_COMMAND"]) -> dict:
         """Runs cases of inside_blender.py in one Blender and returns their results."""
