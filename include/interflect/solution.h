@@ -58,6 +58,10 @@ struct IterationTraffic {
 struct Solution {
     std::shared_ptr<const detail::ElementForest> forest;  ///< Quadtrees of the elements, opaque; see leaves().
     std::vector<Rgb> irradiance;                          ///< Irradiance H [lm/m^2 or W/m^2].
+    /// H before noise reduction [as H]. Paths of hybrid shading and of final gathering end at it: its means over many
+    /// elements have no bias, whereas noise reduction moves light from bright to dark elements. Empty if equal to
+    /// `irradiance`.
+    std::vector<Rgb> unreduced_irradiance;
     /// Parts of H by light group, [group][element]; they sum to H. Empty without light groups.
     std::vector<std::vector<Rgb>> groups;
     /// Part of H that comes straight from sources, by light group as `groups`, or in one entry without groups; their

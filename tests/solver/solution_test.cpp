@@ -35,10 +35,11 @@ Scene distant_room() {
     return scene;
 }
 
-Solution solved(const Scene& scene) {
+Solution solved(const Scene& scene, bool shrinkage = true) {
     SolveOptions options{.method = find_method("ihsrr"), .views = {{into_the_room}}, .limits = {.rays = 300'000}};
     options.views[0].view.eye += scene.origin;
     options.views[0].view.look_at += scene.origin;
+    options.experimental.shrinkage = shrinkage;
     return solve(scene, RayCaster(scene), options);
 }
 
@@ -47,6 +48,20 @@ Imath::V3d twice_the_area(const Leaf& leaf) {
     for (int k = 1; k + 1 < leaf.vertex_count; ++k)
         sum += (leaf.vertices[k] - leaf.vertices[0]).cross(leaf.vertices[k + 1] - leaf.vertices[0]);
     return sum;
+}
+
+/// Noise reduction only changes the finished solution, so the light before it is that of a run without it.
+TEST(Solution, KeepsTheIrradianceBeforeNoiseReduction) {
+    const Scene scene = distant_room();
+    const Solution solution = solved(scene), expected = solved(scene, /*shrinkage=*/false);
+    ASSERT_EQ(solution.forest->subdivided(), expected.forest->subdivided());
+    EXPECT_TRUE(expected.unreduced_irradiance.empty());
+    ASSERT_EQ(solution.unreduced_irradiance.size(), expected.irradiance.size());
+    for (std::size_t e = 0; e < expected.irradiance.size(); ++e)
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(solution.unreduced_irradiance[e][c], expected.irradiance[e][c],
+                        1e-4f * expected.irradiance[0][c]);
+    EXPECT_NE(solution.unreduced_irradiance, solution.irradiance);
 }
 
 TEST(Leaves, CoverEveryPatchOnce) {

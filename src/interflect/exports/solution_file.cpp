@@ -30,9 +30,9 @@ using namespace detail;
 namespace {
 
 /// Versions of the format. Version 3 adds the origin, contacts and surfaces of patches; version 4 checksums, options
-/// and the result; version 5 all iterations; version 6 direct light; version 7 the largest
-/// payload of iterations.
-constexpr int format_version = 7, oldest_format_version = 2, first_with_history = 5, first_with_checksums = 4,
+/// and the result; version 5 all iterations; version 6 direct light; version 7 the largest payload of iterations;
+/// version 8 unreduced irradiance.
+constexpr int format_version = 8, oldest_format_version = 2, first_with_history = 5, first_with_checksums = 4,
               first_with_contacts = 3;
 constexpr std::string_view hdf5_signature = "\x89HDF\r\n\x1a\n";
 
@@ -136,6 +136,11 @@ void require_valid(const Solution& solution) {
     const ElementForest& forest = *solution.forest;
     const auto* irradiance = reinterpret_cast<const float*>(solution.irradiance.data());
     require_none(fault_of({irradiance, 3 * solution.irradiance.size()}, 3, forest, "irradiance"));
+    if (!solution.unreduced_irradiance.empty()) {
+        const auto* unreduced = reinterpret_cast<const float*>(solution.unreduced_irradiance.data());
+        const std::size_t numbers = 3 * solution.unreduced_irradiance.size();
+        require_none(fault_of({unreduced, numbers}, 3, forest, "unreduced irradiance"));
+    }
     for (const ElementNumbers& n : element_numbers)
         if (!n.needs_view || !solution.view_importance.empty())
             require_none(fault_of(solution.*n.values, 1, forest, n.name));
@@ -187,6 +192,8 @@ void read_history(const Hdf5Reader& file, Solution& solution) {
         solution.iterations.push_back(report_of_row(left.first(columns)));
 }
 
+constexpr const char* unreduced_dataset = "/solution/unreduced_irradiance";
+
 std::string group_dataset(std::size_t group) { return fmt::format("/solution/groups/{}", group); }
 
 std::string direct_dataset(std::size_t part) { return fmt::format("/solution/direct/{}", part); }
@@ -223,6 +230,8 @@ void read_solution_arrays(const Hdf5Reader& file, int version, bool has_importan
     Solution& solution = solved.solution;
     solution.forest = forest_of(solved.scene, file.read<std::uint32_t>("/elements/subdivided"));
     solution.irradiance = grouped<Rgb>(file.read<float>("/solution/irradiance", 3));
+    if (file.has(unreduced_dataset))
+        solution.unreduced_irradiance = grouped<Rgb>(file.read<float>(unreduced_dataset, 3));
     for (const ElementNumbers& n : element_numbers) {
         if (n.needs_view && !has_importance) continue;
         if (version < n.since_version)
@@ -278,6 +287,8 @@ std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& descrip
         write("/scene/contacts", flattened(contact_ends(scene)), 3),
         write("/elements/subdivided", std::vector<std::uint32_t>(subdivided.begin(), subdivided.end()), 1),
         write("/solution/irradiance", flattened(solution.irradiance), 3)};
+    if (!solution.unreduced_irradiance.empty())
+        ranges.push_back(write(unreduced_dataset, flattened(solution.unreduced_irradiance), 3));
     for (const ElementNumbers& n : element_numbers)
         if (!n.needs_view || !solution.view_importance.empty())
             ranges.push_back(write(n.dataset, solution.*n.values, 1));

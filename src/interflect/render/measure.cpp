@@ -93,8 +93,7 @@ std::vector<MeasuredIrradiance> measure_irradiance(const Scene& scene, const Sol
 
     const PathStart start{{}, 0, gauges};
     std::optional<KnownIrradiance> known;
-    if (needs_solution(drawing.shading))
-        known.emplace(known_irradiance(scene, *solution->forest, solution->irradiance));
+    if (needs_solution(drawing.shading)) known.emplace(known_irradiance(scene, *solution));
     const Rendering traced = trace_picture(scene, ray_caster, start, drawing, monitor, known ? &*known : nullptr);
     std::vector<MeasuredIrradiance> measured(points.size());
     const SampledLight& light = traced.layers.reflected;

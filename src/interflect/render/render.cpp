@@ -18,22 +18,26 @@ PictureOptions with_samples(PictureOptions options) {
     return options;
 }
 
-}  // namespace
-
-Rendering detail::render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
-                         std::span<const Rgb> irradiance, const PictureOptions& options, const Monitor& monitor) {
-    if (!needs_solution(options.shading)) return interflect::render(scene, ray_caster, view, options, monitor);
+Rendering draw(const Scene& scene, KnownIrradiance known, const RayCaster& ray_caster, const View& view,
+               const PictureOptions& options, const Monitor& monitor) {
+    if (!needs_solution(options.shading)) return render(scene, ray_caster, view, options, monitor);
     const PictureOptions complete = with_samples(options);
     if (!traces_paths(complete.shading))
-        return draw_elements(scene, forest, ray_caster, view, irradiance, complete, monitor);
-    KnownIrradiance known = known_irradiance(scene, forest, irradiance);
+        return draw_elements(scene, known.forest, ray_caster, view, known.irradiance, complete, monitor);
     known.is_interpolated = complete.shading == Shading::hybrid;
     return trace_picture(scene, ray_caster, start_at_camera(view, complete, scene.origin), complete, monitor, &known);
 }
 
+}  // namespace
+
+Rendering detail::render(const Scene& scene, const ElementForest& forest, const RayCaster& ray_caster, const View& view,
+                         std::span<const Rgb> irradiance, const PictureOptions& options, const Monitor& monitor) {
+    return draw(scene, known_irradiance(scene, forest, irradiance), ray_caster, view, options, monitor);
+}
+
 Rendering render(const Scene& scene, const Solution& solution, const RayCaster& ray_caster, const View& view,
                  const PictureOptions& options, const Monitor& monitor) {
-    return detail::render(scene, *solution.forest, ray_caster, view, solution.irradiance, options, monitor);
+    return draw(scene, known_irradiance(scene, solution), ray_caster, view, options, monitor);
 }
 
 Rendering render(const Scene& scene, const RayCaster& ray_caster, const View& view, const PictureOptions& options,

@@ -8,13 +8,14 @@
 #include "interflect/render/gauges/gauge_light.h"
 #include "interflect/render/pictures/path_picture.h"
 #include "interflect/render/sharing/light_order.h"
+#include "interflect/solver/light/group_light.h"
 
 namespace interflect::detail {
 
 void share_light(const Scene& scene, const Solution* solution, const RayCaster& ray_caster, Ranks& ranks) {
     const Monitor monitor{.on_progress = {}, .ranks = &ranks};
     std::optional<KnownIrradiance> known;
-    if (solution) known.emplace(known_irradiance(scene, *solution->forest, solution->irradiance));
+    if (solution) known.emplace(known_irradiance(scene, *solution));
     std::optional<TracedScene> traced;  // scene for gauges, created when it is first needed
     const auto scene_of_gauges = [&]() -> const TracedScene& {
         known.value().is_interpolated = true;
@@ -59,7 +60,7 @@ LightOfGroup light_of_group(const Scene& scene, const Solution& solution, std::s
     std::vector<float> factors(groups.size(), 0);
     factors[group] = 1;
     LightOfGroup light{dimmed(scene, groups, factors), solution};
-    light.solution.irradiance = std::move(light.solution.groups[group]);
+    replace_irradiance(light.solution, std::move(light.solution.groups[group]));
     light.solution.groups.clear();
     return light;
 }

@@ -112,6 +112,7 @@ void expect_equal(const SolvedScene& a, const SolvedScene& b) {
     }
     expect_equal(*a.solution.forest, *b.solution.forest);
     EXPECT_EQ(a.solution.irradiance, b.solution.irradiance);
+    EXPECT_EQ(a.solution.unreduced_irradiance, b.solution.unreduced_irradiance);
     EXPECT_EQ(a.solution.direct, b.solution.direct);
     EXPECT_EQ(a.solution.standard_error, b.solution.standard_error);
     EXPECT_EQ(a.solution.discretisation_error, b.solution.discretisation_error);
@@ -232,7 +233,7 @@ void drop_surfaces_of_patches(const std::filesystem::path& path) {
 std::string as_version_3(std::string bytes) {
     bytes.erase(0, checksum_block_size);
     for (const auto& [now, before] :
-         {std::pair<std::string, std::string>{"\"format_version\": 7", "\"format_version\": 3"},
+         {std::pair<std::string, std::string>{"\"format_version\": 8", "\"format_version\": 3"},
           {"\"version\": ", "\"nothing\": "},
           {"\"files\": ", "\"nothi\": "},
           {"\"options\": ", "\"nothing\": "},

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <vector>
 
 #include "interflect/base/numbers/random.h"
@@ -27,9 +28,21 @@ void with_known_light(const Scene& scene, const std::vector<Rgb>& irradiance, co
                       const auto& visit) {
     const RayCaster ray_caster(scene);
     const ElementForest forest(scene, scene.patches.size());
-    const KnownIrradiance known{forest, irradiance};
+    const KnownIrradiance known{forest, irradiance, irradiance};
     const TracedScene traced(scene, ray_caster);
     visit(known_light(traced, known, points, 1));
+}
+
+TEST(KnownLight, ReflectsTheUnreducedIrradiance) {
+    const Scene scene = closed_box({4, 4, 3}, 1, {Material{"", Rgb(0.5f)}});
+    const RayCaster ray_caster(scene);
+    const TracedScene traced(scene, ray_caster);
+    const ElementForest forest(scene, scene.patches.size());
+    const std::vector<Rgb> reduced(forest.size(), Rgb(2)), unreduced(forest.size(), Rgb(6));
+    const KnownLight light(scene, traced.geometry, {forest, reduced, unreduced});
+    const KnownLight::Place place = light.place(PatchIndex(0), scene.vertices[scene.patches[0].vertices[0]]);
+    EXPECT_EQ(light.irradiance(place), Rgb(2));
+    EXPECT_FLOAT_EQ(light.reflected_radiance(place).x, 0.5f * 6 / std::numbers::pi_v<float>);
 }
 
 /// A room with a small sunlit spot on its floor and two walls of medium brightness. Outside, their backs are in the

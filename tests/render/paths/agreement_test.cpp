@@ -13,6 +13,7 @@
 #include "interflect/ray_caster.h"
 #include "interflect/render.h"
 #include "interflect/render/gauges/gauge_light.h"
+#include "interflect/render/pictures/path_picture.h"
 #include "interflect/solve.h"
 #include "tests/support/scenes/scenes.h"
 #include "tests/support/shadings.h"
@@ -178,7 +179,8 @@ TEST(Agreement, OfBakes) {
         const RayCaster ray_caster(r.scene);
         const Solution solution = solve(r.scene, ray_caster, {.limits = {.rays = 1'000'000}});
         const TracedScene traced(r.scene, ray_caster);
-        const KnownIrradiance known{*solution.forest, solution.irradiance, true};
+        KnownIrradiance known = known_irradiance(r.scene, solution);
+        known.is_interpolated = true;
         std::vector<Gauge> gauges;
         std::vector<MeasuringPoint> points;
         for (std::uint64_t i = 0; points.size() < points_per_room; ++i) {

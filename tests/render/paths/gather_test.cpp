@@ -10,6 +10,7 @@
 
 #include "interflect/base/numbers/random.h"
 #include "interflect/elements/forest.h"
+#include "interflect/generate.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/ray_caster.h"
 #include "interflect/render/reflections/known_light.h"
@@ -58,11 +59,39 @@ TEST(Gather, HasTheMeanOfPathTracing) {
     EXPECT_NEAR(mean_of(gathered.image) / mean_of(reference.image), 1, 0.005);
     EXPECT_NEAR(mean_of(gathered.layers.reflected.direct) / mean_of(reference.layers.reflected.direct), 1, 0.005);
     EXPECT_EQ(gathered.non_finite_pixels, 0);
-    for (Rgb& h : solution.irradiance) h *= 1.1f;
+    for (std::vector<Rgb>* irradiance : {&solution.irradiance, &solution.unreduced_irradiance})
+        for (Rgb& h : *irradiance) h *= 1.1f;
     const Rendering brighter = render(scene, solution, ray_caster, into_corner, by(Shading::gather, options));
     EXPECT_EQ(mean_of(brighter.layers.reflected.direct), mean_of(gathered.layers.reflected.direct));
     EXPECT_GT(mean_of(brighter.layers.reflected.indirect) / mean_of(gathered.layers.reflected.indirect),
               1.07);  // near light is traced, so the ratio is below 1.1
+}
+
+/// In a solution of few rays, noise reduction moves light from bright elements to dark ones, which rays hit less often.
+/// Gathered light avoids this half of its bias. Over 24 seeds, the mean was 0.38% too low (standard deviation 0.18%),
+/// with the reduced irradiance 0.77%, and the difference for one seed 0.39% (0.04%). Variation within elements causes
+/// the rest. The probability that correct code fails is below 1e-5.
+TEST(Gather, HasLessBiasThanTheReducedIrradiance) {
+    RELEASE_ONLY();
+    constexpr int seeds = 4;
+    const Scene scene = make_boxes({.boxes = 9, .seed = 5});
+    const RayCaster ray_caster(scene);
+    const View& view = scene.views.front();
+    PictureOptions options{.width = 96, .height = 54, .samples = 512};
+    const double expected = mean_of(render(scene, ray_caster, view, by(Shading::path, options)).image);
+    options.samples = 64;
+    double mean = 0, mean_of_reduced = 0;
+    for (options.seed = 1; options.seed <= seeds; ++options.seed) {
+        SolveOptions solving{.method = find_method("ihsrr"), .views = {{view}}, .limits = {.rays = 30'000}};
+        solving.seed = options.seed;
+        Solution solution = solve(scene, ray_caster, solving);
+        mean += mean_of(render(scene, solution, ray_caster, view, by(Shading::gather, options)).image) / seeds;
+        solution.unreduced_irradiance.clear();
+        mean_of_reduced +=
+            mean_of(render(scene, solution, ray_caster, view, by(Shading::gather, options)).image) / seeds;
+    }
+    EXPECT_NEAR(mean / expected, 0.9962, 0.0045);
+    EXPECT_NEAR((mean - mean_of_reduced) / expected, 0.0039, 0.001);
 }
 
 /// A lamp close to a corner of undivided walls. A single value per wall is wrong near the corner, so its light is
@@ -143,7 +172,7 @@ TEST(KnownLight, SamplesWithTheStatedDensity) {
     irradiance[first + 1] = Rgb(30);
     irradiance[first + 3] = Rgb(40);
     pull(forest, irradiance);
-    KnownLight light(scene, geometry, forest, irradiance);
+    KnownLight light(scene, geometry, {forest, irradiance, irradiance});
     light.sample_brighter_than(3);
     std::vector<float> weights(scene.patches.size(), 1);
     weights[5] = 0.7f;
@@ -177,7 +206,7 @@ TEST(KnownLight, LeavesEvenLightToDirections) {
     for (const Patch& patch : scene.patches) geometry.emplace_back(scene, patch);
     const ElementForest forest(scene, 1000);
     const std::vector<Rgb> irradiance(forest.size(), Rgb(1));
-    KnownLight light(scene, geometry, forest, irradiance);
+    KnownLight light(scene, geometry, {forest, irradiance, irradiance});
     light.sample_brighter_than(3);
     EXPECT_EQ(light.sample({0.5f, 1, 0}, {0, 0, 1}, 0.5, 0.5f, 0.5f).place.patch, none);
     EXPECT_EQ(light.density({PatchIndex(0), ElementIndex(0), {0.5f, 0.5f}}, {0.5f, 1, 0}, {0, 0, 1}), 0);

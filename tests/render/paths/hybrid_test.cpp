@@ -18,6 +18,7 @@
 #include "interflect/render.h"
 #include "interflect/render/gauges/gauge_light.h"
 #include "interflect/render/lights/unoccluded_light.h"
+#include "interflect/render/pictures/path_picture.h"
 #include "interflect/solve.h"
 #include "tests/support/release_only.h"
 #include "tests/support/scenes/scenes.h"
@@ -210,7 +211,7 @@ TEST(Hybrid, FindsTheIndirectLightOfABrightSpot) {
     std::vector<Rgb> irradiance(scene.patches.size(), Rgb(1));
     const std::size_t middle_of_ceiling = 5 * 16 * 16 + 8 * 16 + 8;
     irradiance[middle_of_ceiling] = Rgb(200);
-    const KnownIrradiance known{forest, irradiance, true};
+    const KnownIrradiance known{forest, irradiance, irradiance, true};
     const TracedScene traced(scene, ray_caster);
     std::vector<Gauge> gauges;
     std::vector<double> exact;
@@ -279,7 +280,7 @@ TEST_P(FloorBelowABall, IsDark) {
     const RayCaster ray_caster(scene);
     const ElementForest forest(scene, scene.patches.size());
     const std::vector<Rgb> irradiance(scene.patches.size(), Rgb(1));
-    const KnownIrradiance known{forest, irradiance, true};
+    const KnownIrradiance known{forest, irradiance, irradiance, true};
     const TracedScene traced(scene, ray_caster);
     const auto exact_at = [&](const V3f& x) {
         double sum = 0;
@@ -326,7 +327,7 @@ TEST(Hybrid, HasEqualNoiseInARoomWithSunlitGroundOutside) {
     irradiance.emplace_back(1e6f);
     const RayCaster ray_caster(scene);
     const ElementForest forest(scene, scene.patches.size());
-    const KnownIrradiance known{forest, irradiance, true};
+    const KnownIrradiance known{forest, irradiance, irradiance, true};
     const TracedScene traced(scene, ray_caster);
     constexpr float texel = 0.005f;
     const auto texel_at = [](float x, float y, PatchIndex patch) {
@@ -381,7 +382,8 @@ TEST(Hybrid, FindsTheIndirectLightInTheShadowOfACrate) {
                           .side_u = {0.04f, 0, 0},
                           .side_v = {0, 0.04f, 0}});
     }
-    const KnownIrradiance known{*solution.forest, solution.irradiance, true};
+    KnownIrradiance known = known_irradiance(scene, solution);
+    known.is_interpolated = true;
     const TracedScene traced(scene, ray_caster);
     const auto found =
         hybrid_irradiance(traced, known, gauges, {.samples = 16, .quantity = PictureQuantity::irradiance}, {});

@@ -95,7 +95,7 @@ std::vector<double> errors_below(const KnownSky& sky, bool has_glass, std::uint6
     const RayCaster ray_caster(scene);
     const ElementForest forest(scene, scene.patches.size());
     const std::vector<Rgb> dark(forest.size(), Rgb(0));
-    const KnownIrradiance known{forest, dark, true};
+    const KnownIrradiance known{forest, dark, dark, true};
     const TracedScene traced(scene, ray_caster);
     PictureOptions options;
     options.samples = samples;

@@ -153,6 +153,20 @@ TEST(Dimming, IsWhatSolvingTheDimmedSceneGives) {
     EXPECT_THROW(dim(together, solution, "red", 1), InputError);
 }
 
+/// Each element keeps the ratio of its unreduced irradiance to the reduced one.
+TEST(Dimming, ScalesTheUnreducedIrradiance) {
+    Scene scene = lit_room();
+    Solution solution = solve(scene, RayCaster(scene), grouped_options("hsrr"));
+    const std::vector<Rgb> before = solution.irradiance, unreduced = solution.unreduced_irradiance;
+    ASSERT_EQ(unreduced.size(), before.size());
+    dim(scene, solution, "red", 0.25f);
+    for (std::size_t e = 0; e < before.size(); ++e)
+        for (int c = 0; c < 3; ++c) {
+            const float expected = before[e][c] > 0 ? unreduced[e][c] * (solution.irradiance[e][c] / before[e][c]) : 0;
+            ASSERT_NEAR(solution.unreduced_irradiance[e][c], expected, 1e-5f * expected + 1e-12f);
+        }
+}
+
 class ExitanceOf : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(Methods, ExitanceOf, testing::Values("hsrr", "ihsrr"), printed_name);
 

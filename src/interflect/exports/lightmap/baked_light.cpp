@@ -129,7 +129,8 @@ BakedLight::BakedLight(const Scene& scene, const Solution& solution, const BakeO
       sampling_(sampling),
       vertices_(scene, *solution.forest),
       smooth_(*solution.forest, vertices_, solution.irradiance),
-      known_{*solution.forest, solution.irradiance, /*is_interpolated=*/true} {
+      known_(known_irradiance(scene, solution)) {
+    known_.is_interpolated = true;
     if (options.shading == Shading::smooth) return;
     ray_caster_.emplace(scene);
     if (options.shading == Shading::hybrid || sampling.calls_direct) traced_.emplace(scene, *ray_caster_);

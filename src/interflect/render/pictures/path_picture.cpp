@@ -395,7 +395,15 @@ Rendering trace_picture(const Scene& scene, const RayCaster& ray_caster, const P
 KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance) {
     forest.require_made_for(scene);
     require_values_of_elements(forest, irradiance.size(), "irradiance");
-    return {forest, irradiance};
+    return {forest, irradiance, irradiance};
+}
+
+KnownIrradiance known_irradiance(const Scene& scene, const Solution& solution) {
+    KnownIrradiance known = known_irradiance(scene, *solution.forest, solution.irradiance);
+    if (solution.unreduced_irradiance.empty()) return known;
+    require_values_of_elements(*solution.forest, solution.unreduced_irradiance.size(), "unreduced irradiance");
+    known.unreduced = solution.unreduced_irradiance;
+    return known;
 }
 
 PathStart start_at_camera(const View& view, const PictureOptions& options, const Imath::V3d& origin) {

@@ -7,11 +7,13 @@
 #include "interflect/render.h"
 #include "interflect/render/prepared/prepared_light.h"
 #include "interflect/render/rays/path_plan.h"
+#include "interflect/solution.h"
 
 namespace interflect::detail {
 
-/// Returns the irradiance as known light. @throws InputError for inconsistent sizes or a forest of another scene.
+/// Return the irradiance as known light. @throws InputError for inconsistent sizes or a forest of another scene.
 KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest, std::span<const Rgb> irradiance);
+KnownIrradiance known_irradiance(const Scene& scene, const Solution& solution);
 
 /// Peak memory of trace_picture() [bytes].
 inline constexpr std::size_t path_bytes_per_pixel = 760;

@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 KnownLight known_light(const TracedScene& scene, const KnownIrradiance& known, std::span<const SurfacePoint> points,
                        std::uint64_t seed) {
-    KnownLight light(scene.scene, scene.geometry, known.forest, known.irradiance);
+    KnownLight light(scene.scene, scene.geometry, known);
     sample_seen_light(light, scene, points, seed);
     return light;
 }

@@ -4,20 +4,12 @@
 #include <optional>
 #include <span>
 
-#include "interflect/elements/forest.h"
 #include "interflect/render/paths/indirect_field.h"
 #include "interflect/render/paths/sky_guide.h"
 #include "interflect/render/rays/path_plan.h"
 #include "interflect/render/reflections/known_light.h"
 
 namespace interflect::detail {
-
-/// Irradiance of every element of a solution. Paths end at it.
-struct KnownIrradiance {
-    const ElementForest& forest;
-    std::span<const Rgb> irradiance;
-    bool is_interpolated = false;  ///< Whether an IndirectField replaces gathering (hybrid shading).
-};
 
 /// Returns the known irradiance, with sampling adapted to the points (sample_seen_light()).
 KnownLight known_light(const TracedScene& scene, const KnownIrradiance& known, std::span<const SurfacePoint> points,

@@ -53,7 +53,7 @@ Rendering preview(const Scene& scene, const Solution& solution, const RayCaster&
     const PictureOptions coarse = reduced(options, preview_options.reduction);
     Monitor light_monitor = monitor_section(monitor, 0, share_of_light);
     light_monitor.on_picture = {};
-    KnownIrradiance known = known_irradiance(scene, *solution.forest, solution.irradiance);
+    KnownIrradiance known = known_irradiance(scene, solution);
     known.is_interpolated = true;
     Rendering result =
         trace_picture(scene, ray_caster, start_at_camera(view, coarse, scene.origin), coarse, light_monitor, &known,

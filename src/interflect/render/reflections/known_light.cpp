@@ -7,13 +7,13 @@
 
 namespace interflect::detail {
 
-KnownLight::KnownLight(const Scene& scene, std::span<const PatchGeometry> geometry, const ElementForest& forest,
-                       std::span<const Rgb> irradiance)
+KnownLight::KnownLight(const Scene& scene, std::span<const PatchGeometry> geometry, const KnownIrradiance& known)
     : scene_(scene),
       geometry_(geometry),
-      forest_(forest),
-      irradiance_(irradiance),
-      excess_(forest.size()),
+      forest_(known.forest),
+      irradiance_(known.irradiance),
+      unreduced_(known.unreduced),
+      excess_(forest_.size()),
       tree_({}, 0) {}
 
 void KnownLight::sample_brighter_than(float radiosity) {
@@ -21,7 +21,7 @@ void KnownLight::sample_brighter_than(float radiosity) {
     for (ElementIndex e{0}; e < forest_.size(); ++e) {
         if (!forest_.is_leaf(e)) continue;
         const Rgb& reflectance = scene_.materials[scene_.patches[forest_.patch(e)].material].reflectance;
-        excess_[e] = std::max(0.0f, channel_sum(reflectance * irradiance_[e]) - radiosity) * forest_.area(e);
+        excess_[e] = std::max(0.0f, channel_sum(reflectance * unreduced_[e]) - radiosity) * forest_.area(e);
     }
     forest_.for_siblings_from_leaves([&](ElementIndex first) {
         excess_[forest_.parent(first)] = excess_[first] + excess_[first + 1] + excess_[first + 2] + excess_[first + 3];
@@ -41,7 +41,7 @@ KnownLight::Place KnownLight::place(PatchIndex patch, const V3f& x) const {
 }
 
 Rgb KnownLight::reflected_radiance(const Place& place) const {
-    return reflectance_at(scene_, scene_.patches[place.patch], place.parameters) * irradiance_[place.leaf] /
+    return reflectance_at(scene_, scene_.patches[place.patch], place.parameters) * unreduced_[place.leaf] /
            std::numbers::pi_v<float>;
 }
 

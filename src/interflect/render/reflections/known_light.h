@@ -12,14 +12,21 @@
 
 namespace interflect::detail {
 
+/// Irradiance of every element of a solution.
+struct KnownIrradiance {
+    const ElementForest& forest;
+    std::span<const Rgb> irradiance;  ///< After noise reduction [as H].
+    std::span<const Rgb> unreduced;   ///< Solution::unreduced_irradiance or, if that is empty, `irradiance`.
+    bool is_interpolated = false;     ///< Whether an IndirectField replaces gathering (hybrid shading).
+};
+
 /// Reflected light of a solution, for final gathering. sample() omits dim elements, so combine it with sampled
 /// directions. Constant methods are thread-safe.
 class KnownLight {
   public:
-    /// Until sample_brighter_than() is called, sample() returns no place. Arguments must outlive this.
-    /// @param irradiance  One value per element; only leaves are used.
-    KnownLight(const Scene& scene, std::span<const PatchGeometry> geometry, const ElementForest& forest,
-               std::span<const Rgb> irradiance);
+    /// Until sample_brighter_than() is called, sample() returns no place. Arguments must outlive this, except `known`
+    /// itself. Only the irradiance of leaves is used.
+    KnownLight(const Scene& scene, std::span<const PatchGeometry> geometry, const KnownIrradiance& known);
 
     /// Restricts sample() to elements of greater reflected radiosity.
     /// @param radiosity  Sum of channels [lm/m^2 or W/m^2].
@@ -39,7 +46,9 @@ class KnownLight {
     Place place(PatchIndex patch, const V3f& x) const;
     int element_level(PatchIndex patch, const V3f& x) const { return forest_.level(place(patch, x).leaf); }
 
+    /// Returns the irradiance after noise reduction.
     const Rgb& irradiance(const Place& place) const { return irradiance_[place.leaf]; }
+    /// Returns the radiance before noise reduction, whose mean over many places has no bias.
     Rgb reflected_radiance(const Place& place) const;
 
     /// Whether the leaf fills a small solid angle at this squared distance [m^2]. Otherwise its constant radiosity
@@ -69,7 +78,7 @@ class KnownLight {
     const Scene& scene_;
     std::span<const PatchGeometry> geometry_;
     const ElementForest& forest_;
-    std::span<const Rgb> irradiance_;
+    std::span<const Rgb> irradiance_, unreduced_;
     std::vector<float> excess_;  // power of each element above the limit of radiosity, sum of channels [lm or W]
     std::vector<float> power_;   // weighted power of each patch above the limit [lm or W]
     LightTree tree_;

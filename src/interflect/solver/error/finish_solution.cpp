@@ -57,6 +57,20 @@ void reduce_patches(const SolverState& state, std::span<const Rgb> unreduced, st
     }
 }
 
+/// Sets the light of four siblings to the mean plus the differences. Scales all four differences if a sibling would be
+/// negative. Returns the factors, one per channel.
+Rgb set_siblings(std::vector<Rgb>& light, ElementIndex first, const Rgb& mean, const std::array<Rgb, 4>& difference) {
+    Rgb factor(1);
+    for (int c = 0; c < 3; ++c) {
+        float lowest = 0;
+        for (const Rgb& d : difference) lowest = std::min(lowest, d[c]);
+        if (-lowest > mean[c]) factor[c] = mean[c] / -lowest;
+        for (std::uint32_t k = 0; k < 4; ++k)  // the maximum corrects rounding
+            light[first + k][c] = std::max(0.0f, mean[c] + factor[c] * difference[k][c]);
+    }
+    return factor;
+}
+
 }  // namespace
 
 void finish_solution(SolverState& state) {
@@ -77,7 +91,7 @@ void finish_solution(SolverState& state) {
     solution.rays.assign(state.sampling.streams.used.begin(), state.sampling.streams.used.end());
 
     // Shrink the differences of siblings, from the patches down to the leaves
-    std::vector<Rgb> reduced = solution.irradiance;
+    std::vector<Rgb> unreduced = solution.irradiance, reduced = solution.irradiance;
     GroupLight reduced_groups = solution.groups, reduced_direct = solution.direct;
     forest.for_siblings_from_roots([&](ElementIndex first) {
         const ElementIndex parent = forest.parent(first);
@@ -94,16 +108,11 @@ void finish_solution(SolverState& state) {
             for (std::uint32_t k = 0; k < 4; ++k) difference[k] -= shrinkage.noise[k] * sum / area;
             return difference;
         };
-        const std::array<Rgb, 4> difference = differences(solution.irradiance);
-        Rgb factor(1);  // scales all four differences if a child would be negative
-        for (int c = 0; c < 3; ++c) {
-            float lowest = 0;
-            for (const Rgb& d : difference) lowest = std::min(lowest, d[c]);
-            const float mean = reduced[parent][c];
-            if (-lowest > mean) factor[c] = mean / -lowest;
-            for (std::uint32_t k = 0; k < 4; ++k)
-                reduced[first + k][c] = std::max(0.0f, mean + factor[c] * difference[k][c]);
-        }
+        std::array<Rgb, 4> measured;
+        for (std::uint32_t k = 0; k < 4; ++k)
+            measured[k] = solution.irradiance[first + k] - solution.irradiance[parent];
+        set_siblings(unreduced, first, unreduced[parent], measured);
+        const Rgb factor = set_siblings(reduced, first, reduced[parent], differences(solution.irradiance));
         const auto reduce = [&](const GroupLight& light, GroupLight& reduced_light) {
             for (std::size_t g = 0; g < light.size(); ++g) {
                 const std::array<Rgb, 4> of_group = differences(light[g]);
@@ -121,6 +130,11 @@ void finish_solution(SolverState& state) {
         reduce_patches(state, solution.groups[g], reduced_groups[g]);
     for (std::size_t g = 0; g < reduced_direct.size(); ++g)
         reduce_patches(state, solution.direct[g], reduced_direct[g]);
+
+    // Keep the light before noise reduction if it differs
+    solution.unreduced_irradiance.clear();
+    if (solution.options.experimental.shrinkage && unreduced != reduced)
+        solution.unreduced_irradiance = std::move(unreduced);
 
     // Make light groups and direct light consistent with the total
     solution.irradiance = std::move(reduced);

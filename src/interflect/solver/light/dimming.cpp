@@ -28,7 +28,7 @@ void dim(Scene& scene, Solution& solution, const std::string& group, float facto
     for (Rgb& h : solution.groups[g]) h *= factor;
     if (!solution.direct.empty())
         for (Rgb& h : solution.direct[g]) h *= factor;
-    solution.irradiance = sum_of(solution.groups);
+    replace_irradiance(solution, sum_of(solution.groups));
 }
 
 }  // namespace interflect
