@@ -174,7 +174,7 @@ class Solution(CommandTest):
         self.assertEqual(report["result"], self.iterations[-1])
         self.assertEqual(report["history"], self.iterations)
         self.assertGreater(len(self.iterations), 1)
-        self.assertEqual((report["format_version"], report["interrupted"]), (7, False))
+        self.assertEqual((report["format_version"], report["interrupted"]), (8, False))
         checksums = [f"{zlib.crc32(self.bytes(name)):08x}" for name in report["files"]]
         self.assertEqual(report["file_checksums"], checksums)
         self.assertEqual(report["files"], ["room.mgf", "room.views.json"])
@@ -183,7 +183,7 @@ class Solution(CommandTest):
     def test_text_tells_the_same(self):
         text = self.interflect("info", "room.h5").stdout
         result = self.json("info", "room.h5")["result"]
-        words = ("room.mgf", "version 7", "ihsrr, seed 7", "epsilon_decay 0.5", "1000 lm", "floor")
+        words = ("room.mgf", "version 8", "ihsrr, seed 7", "epsilon_decay 0.5", "1000 lm", "floor")
         for word in (*words, str(result["rays"]), str(result["elements"]), "noise ", "mesh "):
             self.assertIn(word, text)
         self.assertNotIn("alpha", text, "only what differs from the defaults")
