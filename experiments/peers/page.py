@@ -10,7 +10,8 @@ from lab.analysis import drawing
 from .bench import DEFAULT, OURS, TEXTS, all_series, references_of
 from .scenes import SCENES
 
-SMALLEST = 1e-6  # errors below it are noise of the references
+SMALLEST = 1e-6  # of errors of blocks, which may be 0 by noise
+PIXELS = ("pixels", "trimmed")  # errors that the noise of the references limits
 COLUMNS = 3  # of panels
 LARGEST = 300  # error in a panel [%]; a mesh that leaks light may have far more
 CAPTION = """Pictures of {size} pixels: relative root mean square error of the luminance of pixels against the time of the
@@ -21,13 +22,27 @@ CAPTION = """Pictures of {size} pixels: relative root mean square error of the l
 def write(table: Path, folder: Path) -> None:
     rows = results.read_csv(table, TEXTS)
     small = min((row["size"] for row in rows), key=lambda size: int(size.partition("x")[0]))
-    draw_curves([row for row in rows if row["size"] == small and row["scene"] in SCENES], folder, small)
-    write_rows(rows, folder / "peers.md", small)
-    write_times([row for row in rows if row["size"] == small], folder / "peers-times.md")
-    write_agreement(results.read_csv(references_of(table), TEXTS), folder / "peers-references.md")
+    references = results.read_csv(references_of(table), TEXTS)
+    found = smallest_errors(references)
+    draw_curves([row for row in rows if row["size"] == small and row["scene"] in SCENES], folder, small, found)
+    write_rows(rows, folder / "peers.md", small, found)
+    write_times([row for row in rows if row["size"] == small], folder / "peers-times.md", found)
+    write_agreement(references, folder / "peers-references.md")
 
 
-def draw_curves(rows: list[dict], folder: Path, size: str) -> None:
+Smallest = dict[tuple[str, str], float]  # error of pixels that stands out of the noise of the references: by scene and size
+
+
+def smallest_errors(references: list[dict]) -> Smallest:
+    return {(row["scene"], row["size"]): row["smallest"] for row in references}
+
+
+def error_of(row: dict, kind: str, smallest: Smallest) -> float:
+    """Returns the error, at least the smallest that is found."""
+    return max(row[kind], smallest[row["scene"], row["size"]] if kind in PIXELS else SMALLEST)
+
+
+def draw_curves(rows: list[dict], folder: Path, size: str, smallest: Smallest) -> None:
     """Draws a panel for each scene, held-out scenes excepted."""
     scenes = results.grouped(rows, "scene")
     if not scenes:
@@ -40,11 +55,11 @@ def draw_curves(rows: list[dict], folder: Path, size: str) -> None:
         for number, series in enumerate(all_series()):
             runs = sorted(by_series.get(series.name, []), key=lambda row: row["seconds"])
             if runs:
-                curve = [row["seconds"] for row in runs], [100 * max(row["pixels"], SMALLEST) for row in runs]
+                curve = [row["seconds"] for row in runs], [100 * error_of(row, "pixels", smallest) for row in runs]
                 axes.plot(*curve, label=series.name, **drawing.style_of(number))
         for row in (row for row in found if (row["series"], row["settings"]) == (OURS, DEFAULT)):
             style = {"markersize": 11, "markerfacecolor": "none", "markeredgecolor": "#333333", "linestyle": "none"}
-            axes.plot([row["seconds"]], [100 * max(row["pixels"], SMALLEST)], marker="o", **style)
+            axes.plot([row["seconds"]], [100 * error_of(row, "pixels", smallest)], marker="o", **style)
         axes.set_yscale("log")
         axes.set_ylim(top=min(LARGEST, axes.get_ylim()[1]))
         drawing.logarithmic(axes, "time of the whole process [s]", "relative RMS error of pixels [%]")
@@ -54,14 +69,14 @@ def draw_curves(rows: list[dict], folder: Path, size: str) -> None:
     drawing.save(figure, folder, "peers", CAPTION.format(size=size.replace("x", " x ")))
 
 
-def write_rows(rows: list[dict], path: Path, small: str) -> None:
+def write_rows(rows: list[dict], path: Path, small: str, smallest: Smallest) -> None:
     """Writes a line for each picture, sorted by scene, size, program and time."""
     order = [series.name for series in all_series()]
     lines = []
     for name, found in results.grouped(rows, "scene").items():
         for row in sorted(found, key=lambda row: (row["size"] != small, order.index(row["series"]), row["seconds"])):
             size = "" if row["size"] == small else f", {row['size'].replace('x', ' x ')}"
-            errors = [f"{100 * row[kind]:.3g}%" for kind in ("pixels", "trimmed", "blocks_4", "blocks_9")]
+            errors = [shown_error(row, kind, smallest) for kind in (*PIXELS, "blocks_4", "blocks_9")]
             cost = [f"{row['seconds']:.1f}", f"{row['peak_mib']:,.0f}"]
             lines.append([name + size, row["series"], shown(row), *cost, *errors, f"{100 * (row['mean'] - 1):+.2f}%"])
     header = ["scene", "program", "settings", "seconds", "peak MiB"]
@@ -77,23 +92,34 @@ def shown(row: dict) -> str:
     return f"{first} samples" if first.isdigit() else f"`{row['settings']}`"
 
 
-def write_times(rows: list[dict], path: Path) -> None:
-    """Writes the time in which each program reaches the error of ours with its default settings."""
+def shown_error(row: dict, kind: str, smallest: Smallest) -> str:
+    error = error_of(row, kind, smallest)
+    return f"{'' if error == row[kind] else '< '}{100 * error:.3g}%"
+
+
+def write_times(rows: list[dict], path: Path, smallest: Smallest) -> None:
+    """Writes the time in which each program reaches the error of ours with its default settings, and the time in which
+    ours reaches the smallest error that was measured of the other program."""
     lines = []
     for name, found in results.grouped(rows, "scene").items():
-        ours = next((row for row in found if (row["series"], row["settings"]) == (OURS, DEFAULT)), None)
-        if ours is None:
-            continue
-        of_ours = [f"{ours['seconds']:.1f} ({100 * ours[kind]:.3g}%)" for kind in ("pixels", "blocks_4")]
-        lines.append([name, OURS, *of_ours])
         by_series = results.grouped(found, "series")
-        for series in all_series():
-            if series.name != OURS and series.name in by_series:
-                runs = by_series[series.name]
-                times = [seconds_to(ours[kind], runs, kind, series.unbiased) for kind in ("pixels", "blocks_4")]
-                lines.append([name, series.name, *[f"{time} {factor(time, ours['seconds'])}" for time in times]])
-    header = ["scene", "program", "seconds to the error of ours, pixels", "blocks of 4"]
-    results.write_table(path, header, [[str(cell) for cell in line] for line in lines])
+        ours = by_series.get(OURS, [])
+        default = next((row for row in ours if row["settings"] == DEFAULT), None)
+        if default is None:
+            continue
+        of_ours = [f"{default['seconds']:.1f} ({shown_error(default, kind, smallest)})" for kind in ("pixels", "blocks_4")]
+        lines.append([name, OURS, *of_ours, "", ""])
+        for series in (series for series in all_series() if series.name != OURS and series.name in by_series):
+            runs = by_series[series.name]
+            kinds = ("pixels", "blocks_4")
+            times = [seconds_to(error_of(default, kind, smallest), runs, kind, series.unbiased) for kind in kinds]
+            best = min(runs, key=lambda row: row["pixels"])
+            equal = seconds_to(error_of(best, "pixels", smallest), ours, "pixels", False)
+            its_best = [f"{best['seconds']:.1f} ({shown_error(best, 'pixels', smallest)})", f"{equal} ({best['seconds'] / equal:.1f} times)"]
+            lines.append([name, series.name, *[f"{time} {factor(time, default['seconds'])}" for time in times], *its_best])
+    header = ["scene", "program", "seconds to the error of ours by default, pixels", "blocks of 4"]
+    header += ["its smallest error", "seconds of ours to it"]
+    results.write_table(path, header, lines)
 
 
 class Time(float):
@@ -111,7 +137,6 @@ class Time(float):
 def seconds_to(error: float, runs: list[dict], kind: str, unbiased: bool) -> Time:
     """Returns the time of a curve at this error, interpolated in logarithms. An unbiased curve is extrapolated with the
     root of time; others may not reach the error at any time."""
-    error = max(error, SMALLEST)
     points = sorted((row["seconds"], max(row[kind], SMALLEST)) for row in runs)
     if points[0][1] <= error:
         return Time("<", points[0][0])

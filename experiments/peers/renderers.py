@@ -81,7 +81,7 @@ def by_radiance(job: Job, options: str) -> Drawn:
     """@param options  Options of rtrace."""
     picture = job.folder / "radiance.npy"
     numbers = [*map(str, job.size), str(RADIANCE_SIDE)]
-    bounces = ["-ab", str(BOUNCES - 1), "-lr", str(-BOUNCES)]  # negative: Russian roulette below the weight -lw
+    bounces = ["-lr", str(-BOUNCES)]  # of specular rays; negative: Russian roulette below the weight -lw
     arguments = [job.exported("rad"), picture, *numbers, *bounces, *options.split()]
     return drawn_by_script("draw_in_radiance.py", arguments, picture)
 
