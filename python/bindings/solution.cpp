@@ -134,8 +134,8 @@ void bind_elements(py::module_& m) {
         .def_property_readonly("irradiance", element_array(&Solution::irradiance),
                                array_text("(n, 3) float32", docs::Solution_irradiance).c_str())
         .def_property_readonly("unreduced_irradiance", element_array(&Solution::unreduced_irradiance),
-                               "(n, 3) float32: irradiance before noise reduction, at which paths of hybrid shading "
-                               "and of final gathering end [as H]. None if equal to `irradiance`.")
+                               "(n, 3) float32: irradiance before noise reduction, for hybrid shading and final "
+                               "gathering [as H]. Without a difference from `irradiance`: None.")
         .def_property_readonly(
             "groups", element_arrays(&Solution::groups),
             "List of (n, 3) float32: parts of `irradiance`, one per name of Solution.group_names, whose "

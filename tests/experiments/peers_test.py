@@ -203,7 +203,9 @@ class Programs(CommandTest):
         self.check(renderers.by_cycles, "256 denoise guide", 0.02)
 
     def test_radiance(self):
-        self.check(renderers.by_radiance, f"{bench.CACHES[0]} {bench.ACCURATE}", 0.05)
+        settings = f"{bench.CACHES[0]} {bench.ACCURATE}"
+        all_light = settings.replace("-ab 4", "-ab 8").replace("-lw 0.002", "-lw 0.0005")
+        self.check(renderers.by_radiance, all_light, 0.05)
 
     def test_renderpark(self):
         self.check(renderers.by_renderpark, f"{bench.STOCHASTIC_JACOBI} -srr-ray-units 30 -srr-epsilon 5e-4", 0.05)

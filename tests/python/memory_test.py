@@ -23,7 +23,7 @@ def resident() -> int:
 
 class Memory(unittest.TestCase):
     def test_is_constant_over_hundreds_of_solvers(self):
-        """Each keeps its scene, ray caster, mesh and a solution with arrays: a lost one of 300 costs more than 100 kB."""
+        """Each keeps its scene, ray caster, mesh and a solution with arrays: a leak of one solver costs more than 100 kB."""
         scene = room()
 
         def make(count):

@@ -50,7 +50,7 @@ Imath::V3d twice_the_area(const Leaf& leaf) {
     return sum;
 }
 
-/// Noise reduction only changes the finished solution, so the light before it is that of a run without it.
+/// Noise reduction only changes the finished solution, so a run without it has the same light as a run before it.
 TEST(Solution, KeepsTheIrradianceBeforeNoiseReduction) {
     const Scene scene = distant_room();
     const Solution solution = solved(scene), expected = solved(scene, /*shrinkage=*/false);

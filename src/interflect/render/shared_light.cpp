@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "interflect/core.h"
+#include "interflect/elements/dimmed_irradiance.h"
 #include "interflect/render/gauges/gauge_light.h"
 #include "interflect/render/pictures/path_picture.h"
 #include "interflect/render/sharing/light_order.h"
-#include "interflect/solver/light/group_light.h"
 
 namespace interflect::detail {
 

@@ -356,9 +356,9 @@ TEST(Hybrid, HasEqualNoiseInARoomWithSunlitGroundOutside) {
     EXPECT_LT(noise_inside(everywhere), 1.4 * alone);
 }
 
-/// Indirect light beside a sunlit crate without a sky, where most rays of records escape: as by path tracing within a
-/// fifth of the mean. Records blur the steep change at the foot. Seen to fail (-57%) when escaped rays extend the reach
-/// of records.
+/// Indirect light beside a sunlit crate without a sky, where most rays of records escape: in the mean of twelve
+/// solutions as by path tracing, within 15% of the mean. Records blur the steep change at the foot, by up to 6%; one
+/// solution has a standard deviation of 11%. Seen to fail (-57%) when escaped rays extend the reach of records.
 TEST(Hybrid, FindsTheIndirectLightInTheShadowOfACrate) {
     RELEASE_ONLY();  // see Hybrid.SunOutsideAddsNoNoise
     Scene scene;
@@ -370,7 +370,6 @@ TEST(Hybrid, FindsTheIndirectLightInTheShadowOfACrate) {
     scene.luminaires.push_back({"sun", 0, DirectionalLight{{0.8f, 0.1f, -0.9f}, Rgb(10'000)}});
     scene = cut_at_contacts(std::move(scene));
     const RayCaster ray_caster(scene);
-    const Solution solution = solve(scene, ray_caster, {.method = find_method("hsrr"), .limits = {.rays = 2'000'000}});
     std::vector<MeasuringPoint> points;
     std::vector<Gauge> gauges;
     for (int i = 0; i < 12; ++i) {
@@ -382,17 +381,25 @@ TEST(Hybrid, FindsTheIndirectLightInTheShadowOfACrate) {
                           .side_u = {0.04f, 0, 0},
                           .side_v = {0, 0.04f, 0}});
     }
-    KnownIrradiance known = known_irradiance(scene, solution);
-    known.is_interpolated = true;
     const TracedScene traced(scene, ray_caster);
-    const auto found =
-        hybrid_irradiance(traced, known, gauges, {.samples = 16, .quantity = PictureQuantity::irradiance}, {});
+    constexpr int solutions = 12;
+    std::vector<double> found(points.size(), 0);
+    for (std::uint64_t seed = 1; seed <= solutions; ++seed) {
+        SolveOptions solving{.method = find_method("hsrr"), .limits = {.rays = 2'000'000}};
+        PictureOptions options{.samples = 16, .quantity = PictureQuantity::irradiance};
+        solving.seed = options.seed = seed;
+        const Solution solution = solve(scene, ray_caster, solving);
+        KnownIrradiance known = known_irradiance(scene, solution);
+        known.is_interpolated = true;
+        const std::vector<GaugeLight> light = hybrid_irradiance(traced, known, gauges, options, {});
+        for (std::size_t i = 0; i < points.size(); ++i)
+            found[i] += static_cast<double>(light[2 * i].indirect.x) / solutions;
+    }
     const auto expected =
         measure_irradiance(scene, nullptr, ray_caster, points, {.shading = Shading::path, .samples = 1 << 14});
     double mean = 0;
     for (const MeasuredIrradiance& e : expected) mean += static_cast<double>(e.indirect.x) / 12;
-    for (std::size_t i = 0; i < points.size(); ++i)
-        EXPECT_NEAR(found[2 * i].indirect.x, expected[i].indirect.x, 0.15 * mean) << i;
+    for (std::size_t i = 0; i < points.size(); ++i) EXPECT_NEAR(found[i], expected[i].indirect.x, 0.15 * mean) << i;
 }
 
 /// Root of the mean variance relative to the squared mean of the 49 pixels around, at least the mean of the picture.

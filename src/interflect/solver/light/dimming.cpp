@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "interflect/core.h"
+#include "interflect/elements/dimmed_irradiance.h"
 #include "interflect/solver/light/group_light.h"
 #include "interflect/solver/light/materials.h"
 #include "interflect/solver/light/patch_light.h"

@@ -1,7 +1,5 @@
 #include "interflect/solver/light/group_light.h"
 
-#include <utility>
-
 #include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 
@@ -23,16 +21,6 @@ std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimmi
     for (std::size_t g = 0; g < light.size(); ++g)
         for (std::size_t e = 0; e < sum.size() && (dimming.empty() || dimming[g] > 0); ++e) sum[e] += light[g][e];
     return sum;
-}
-
-void replace_irradiance(Solution& solution, std::vector<Rgb> dimmed) {
-    for (std::size_t e = 0; e < solution.unreduced_irradiance.size(); ++e) {
-        const Rgb& before = solution.irradiance[e];
-        Rgb& unreduced = solution.unreduced_irradiance[e];
-        for (int c = 0; c < 3; ++c)
-            unreduced[c] = before[c] > 0 ? unreduced[c] * (dimmed[e][c] / before[c]) : dimmed[e][c];
-    }
-    solution.irradiance = std::move(dimmed);
 }
 
 void scale(GroupLight& light, float factor) {

@@ -7,7 +7,6 @@
 #include "interflect/elements/forest.h"
 #include "interflect/luminaires/emission.h"
 #include "interflect/scene.h"
-#include "interflect/solution.h"
 #include "interflect/solver/light/materials.h"
 
 namespace interflect::detail {
@@ -27,10 +26,6 @@ void scale(GroupLight& light, float factor);
 
 /// Returns the sum over the groups. @param dimming  Solution::dimming; groups with factor 0 are excluded.
 std::vector<Rgb> sum_of(const GroupLight& light, const std::vector<float>& dimming = {});
-
-/// Replaces the irradiance of a solution by that of dimmed sources. Scales the unreduced irradiance of each element by
-/// the same factors.
-void replace_irradiance(Solution& solution, std::vector<Rgb> dimmed);
 
 /// Radiosity by light group, computed on demand.
 struct GroupRadiosity {
