@@ -115,7 +115,8 @@ def write_times(rows: list[dict], path: Path, smallest: Smallest) -> None:
             times = [seconds_to(error_of(default, kind, smallest), runs, kind, series.unbiased) for kind in kinds]
             best = min(runs, key=lambda row: row["pixels"])
             equal = seconds_to(error_of(best, "pixels", smallest), ours, "pixels", False)
-            its_best = [f"{best['seconds']:.1f} ({shown_error(best, 'pixels', smallest)})", f"{equal} ({best['seconds'] / equal:.1f} times)"]
+            its_best = [f"{best['seconds']:.1f} ({shown_error(best, 'pixels', smallest)})"]
+            its_best += [f"{equal} ({best['seconds'] / equal:.1f} times)"]
             lines.append([name, series.name, *[f"{time} {factor(time, default['seconds'])}" for time in times], *its_best])
     header = ["scene", "program", "seconds to the error of ours by default, pixels", "blocks of 4"]
     header += ["its smallest error", "seconds of ours to it"]

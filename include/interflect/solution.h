@@ -58,8 +58,8 @@ struct IterationTraffic {
 struct Solution {
     std::shared_ptr<const detail::ElementForest> forest;  ///< Quadtrees of the elements, opaque; see leaves().
     std::vector<Rgb> irradiance;                          ///< Irradiance H [lm/m^2 or W/m^2].
-    /// H before noise reduction [as H]. Paths of hybrid shading and of final gathering end at it: its means over many
-    /// elements have no bias, whereas noise reduction moves light from bright to dark elements. Empty if equal to
+    /// H before noise reduction [as H]. Paths of hybrid shading and of final gathering end at it: noise
+    /// reduction moves light from bright to dark elements, which biases means over the visible ones. Empty if equal to
     /// `irradiance`.
     std::vector<Rgb> unreduced_irradiance;
     /// Parts of H by light group, [group][element]; they sum to H. Empty without light groups.

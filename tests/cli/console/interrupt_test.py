@@ -223,9 +223,21 @@ class Interrupt(CommandTest):
         process.send_signal(signal.SIGINT)
         self.assertIn("stopping, and keeping usable results", process.stderr.readline())
         self.assertNotEqual(self.temporary_files(), [])
+        time.sleep(0.5)  # longer than between the copies of one signal
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=SOON), -signal.SIGINT)
         self.assertEqual(self.temporary_files(), [])
+
+    def test_copies_of_a_signal_count_once(self):
+        """As of `timeout`, which signals the process and then its group."""
+        process = self.start("solve", "room.mgf", "-o", "out.h5", *ENDLESS)
+        self.wait_for_progress(process)
+        process.send_signal(signal.SIGINT)
+        self.assertIn("stopping, and keeping usable results", process.stderr.readline())
+        process.send_signal(signal.SIGINT)
+        said = process.communicate(timeout=SOON)[1]
+        self.assertEqual(process.returncode, INTERRUPTED, said)
+        self.assertEqual(self.files(), ["out.h5", "room.mgf"])
 
     def start_writing_into_a_pipe(self):
         """Starts a process that has solved and waits for a reader of the result."""

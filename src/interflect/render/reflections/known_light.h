@@ -48,7 +48,7 @@ class KnownLight {
 
     /// Returns the irradiance after noise reduction.
     const Rgb& irradiance(const Place& place) const { return irradiance_[place.leaf]; }
-    /// Returns the radiance before noise reduction, whose mean over many places has no bias.
+    /// Returns the radiance before noise reduction, which would bias its mean over many places.
     Rgb reflected_radiance(const Place& place) const;
 
     /// Whether the leaf fills a small solid angle at this squared distance [m^2]. Otherwise its constant radiosity
