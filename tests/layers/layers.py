@@ -30,7 +30,7 @@ INNER_LAYERS = {
         "light", "clusters", "importance", "sampling", "noise", "deposit", "transport", "state", "shrinkage", "error",
         "refinement", "iteration", "methods", "methods/baselines", "methods/links", "methods/particles", ".",
     ],
-    "render": ["smooth", "lights", "reflections", "rays", "paths", "prepared", "sharing", "pictures", "gauges", "filters", "preview", "."],
+    "render": ["smooth", "lights", "reflections", "rays", "direct", "paths", "prepared", "sharing", "pictures", "gauges", "filters", "preview", "."],
     "audit": ["."],
     "rates": ["."],
     "photometry": ["."],

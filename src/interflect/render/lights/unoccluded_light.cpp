@@ -1,9 +1,12 @@
 #include "interflect/render/lights/unoccluded_light.h"
 
+#include <ImathBox.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <variant>
 
 #include "interflect/luminaires/illumination.h"
@@ -12,8 +15,9 @@ namespace interflect::detail {
 
 namespace {
 
-/// With more sources, the sum over them would take longer than tracing the shadow rays.
-constexpr std::size_t max_sources = 64;
+/// With more sources of a kind, the sum over them would take longer than tracing the shadow rays. Patches take less
+/// time than luminaires.
+constexpr std::size_t max_patches = 256, max_luminaires = 64;
 
 /// Returns acos(x) / sqrt(1 - x^2) for x in [0, 1], within 2e-8 of acos (Abramowitz and Stegun 1964, 4.4.46). Unlike
 /// the quotient it is well conditioned for small angles.
@@ -60,6 +64,61 @@ Rgb by_luminaire(const Luminaire& luminaire, const V3f& x, const V3f& n, float u
             irradiance += light.irradiance * std::max(0.0f, n.dot(light.towards));
         }
     return irradiance / static_cast<float>(across * across);
+}
+
+std::size_t index(SourceKind kind) { return static_cast<std::size_t>(kind); }
+
+/// Returns the position of a lamp, or the unit direction towards a sun.
+V3f place_of(const Luminaire& luminaire) {
+    return std::visit(
+        [](const auto& light) {
+            if constexpr (requires { light.position; })
+                return V3f(light.position);
+            else if constexpr (requires { light.direction; })
+                return V3f(-light.direction.normalized());
+            else
+                return V3f(0);  // skies
+        },
+        luminaire.kind);
+}
+
+/// Whether by_luminaire() has no noise.
+bool has_exact_light(const Luminaire& luminaire) {
+    const auto* sun = std::get_if<DirectionalLight>(&luminaire.kind);
+    return sun ? sun->diameter == 0 : strata(luminaire, V3f(0, 0, 1)) == 1;
+}
+
+Imath::Box3f bounds_of_places(std::span<const UnoccludedLight::Source> sources) {
+    Imath::Box3f box;
+    for (const auto& source : sources) box.extendBy(source.place);
+    return box;
+}
+
+float diagonal(std::span<const UnoccludedLight::Source> sources) { return bounds_of_places(sources).size().length(); }
+
+/// Divides sources into at most `most` groups of near ones, which are consecutive afterwards: the group of the largest
+/// extent is halved again and again.
+std::vector<std::span<UnoccludedLight::Source>> near_groups(std::span<UnoccludedLight::Source> sources,
+                                                            std::size_t most) {
+    using Source = UnoccludedLight::Source;
+    if (sources.empty()) return {};
+    std::vector<std::span<Source>> groups{sources};
+    while (groups.size() < most) {
+        const auto largest = std::max_element(groups.begin(), groups.end(),
+                                              [](const auto& a, const auto& b) { return diagonal(a) < diagonal(b); });
+        const std::span<Source> group = *largest;
+        const Imath::Box3f box = bounds_of_places(group);
+        if (!(box.size().length() > 0)) break;
+        const auto axis = static_cast<int>(box.majorAxis());
+        const std::size_t half = group.size() / 2;
+        std::nth_element(group.begin(), group.begin() + static_cast<std::ptrdiff_t>(half), group.end(),
+                         [axis](const Source& a, const Source& b) {
+                             return std::pair(a.place[axis], a.index) < std::pair(b.place[axis], b.index);
+                         });
+        *largest = group.first(half);
+        groups.insert(largest + 1, group.subspan(half));
+    }
+    return groups;
 }
 
 }  // namespace
@@ -126,50 +185,70 @@ UnoccludedLight::PatchGroup::Irradiance UnoccludedLight::PatchGroup::at(const V3
 }
 
 UnoccludedLight::UnoccludedLight(const Scene& scene, std::span<const PatchGeometry> geometry)
-    : scene_(scene), geometry_(geometry) {
+    : scene_(scene),
+      geometry_(geometry),
+      lamp_of_patch_(scene.patches.size(), none),
+      lamp_of_luminaire_(scene.luminaires.size(), none) {
+    std::array<std::vector<Source>, source_kinds.size()> sources;
+    bool has_texture = false;
     for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
         const Material& material = scene.materials[scene.patches[i].material];
         if (!(channel_sum(material.exitance) > 0)) continue;
-        if (patch_count_++ % PatchGroup::size == 0) groups_.emplace_back();
-        groups_.back().add(scene, i);
-        has_texture_ = has_texture_ || material.exitance_texture != none;
+        sources[index(SourceKind::patches)].push_back({i, geometry[i].centre()});
+        has_texture = has_texture || material.exitance_texture != none;
     }
     for (std::uint32_t i = 0; i < scene.luminaires.size(); ++i) {
         if (is_sky(scene.luminaires[i])) continue;
-        const auto* sun = std::get_if<DirectionalLight>(&scene.luminaires[i].kind);
-        (sun ? suns_ : lamps_).push_back(i);
-        const bool is_point = sun ? sun->diameter == 0 : strata(scene.luminaires[i], V3f(0, 0, 1)) == 1;
-        if (!is_point) is_exact_[static_cast<std::size_t>(sun ? SourceKind::suns : SourceKind::lamps)] = false;
+        const bool is_sun = std::holds_alternative<DirectionalLight>(scene.luminaires[i].kind);
+        sources[index(is_sun ? SourceKind::suns : SourceKind::lamps)].push_back({i, place_of(scene.luminaires[i])});
+    }
+    for (const SourceKind kind : source_kinds) {
+        const std::size_t k = index(kind);
+        const bool is_patches = kind == SourceKind::patches;
+        is_available_[k] =
+            sources[k].size() <= (is_patches ? max_patches : max_luminaires) && !(is_patches && has_texture);
+        lamps_by_kind_[k].first = lamp_count();
+        if (is_available_[k]) add_lamps(kind, sources[k]);
+        lamps_by_kind_[k].second = lamp_count();
     }
 }
 
-bool UnoccludedLight::has(SourceKind kind) const {
-    if (kind == SourceKind::patches) return !has_texture_ && patch_count_ <= max_sources;
-    return (kind == SourceKind::lamps ? lamps_ : suns_).size() <= max_sources;
+void UnoccludedLight::add_lamps(SourceKind kind, std::span<Source> sources) {
+    for (const std::span<Source> lamp : near_groups(sources, max_lamps_of_kind)) {
+        const auto number = static_cast<std::uint32_t>(lamp_count());
+        is_exact_.push_back(1);
+        for (const Source& source : lamp)
+            if (kind == SourceKind::patches) {
+                lamp_of_patch_[source.index] = number;
+                if (groups_.empty() || groups_.back().count == PatchGroup::size) groups_.emplace_back();
+                groups_.back().add(scene_, PatchIndex(source.index));
+            } else {
+                lamp_of_luminaire_[source.index] = number;
+                luminaires_.push_back(source.index);
+                is_exact_.back() &= has_exact_light(scene_.luminaires[source.index]);
+            }
+    }
 }
 
-Rgb UnoccludedLight::at(SourceKind kind, const V3f& x, const V3f& n, float u, float v) const {
-    if (kind == SourceKind::patches) return by_patches(x, n);
-    Rgb irradiance(0);
-    for (const std::uint32_t i : kind == SourceKind::lamps ? lamps_ : suns_)
-        irradiance += by_luminaire(scene_.luminaires[i], x, n, u, v);
-    return irradiance;
-}
-
-Rgb UnoccludedLight::by_patches(const V3f& x, const V3f& n) const {
-    Rgb irradiance(0);
+void UnoccludedLight::add(const V3f& x, const V3f& n, float u, float v, std::span<const std::uint8_t> is_needed,
+                          std::span<Rgb> by_lamp) const {
     for (const PatchGroup& group : groups_) {
+        const auto patches = std::span(group.patches).first(group.count);
+        const auto is_used = [&](PatchIndex patch) { return is_needed[lamp_of_patch_[patch]] != 0; };
+        if (std::none_of(patches.begin(), patches.end(), is_used)) continue;
         const PatchGroup::Irradiance found = group.at(x, n);
         for (std::size_t i = 0; i < group.count; ++i) {
             const PatchIndex patch = group.patches[i];
             const PatchGeometry& geometry = geometry_[patch];
             if (geometry.normal().dot(x - geometry.shape().origin) <= 0) continue;
             const float of_unit_radiance = found.is_exact[i] ? found.of_unit_radiance[i] : by_patch(patch, x, n);
-            irradiance += scene_.materials[scene_.patches[patch].material].exitance *
-                          (of_unit_radiance / std::numbers::pi_v<float>);
+            by_lamp[lamp_of_patch_[patch]] += scene_.materials[scene_.patches[patch].material].exitance *
+                                              (of_unit_radiance / std::numbers::pi_v<float>);
         }
     }
-    return irradiance;
+    for (const std::uint32_t i : luminaires_)
+        if (const std::uint32_t lamp = lamp_of_luminaire_[i]; is_needed[lamp] != 0)
+            by_lamp[lamp] += by_luminaire(scene_.luminaires[i], x, n, u, v);
 }
 
 float UnoccludedLight::by_patch(PatchIndex patch, const V3f& x, const V3f& n) const {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "interflect/core.h"
@@ -13,25 +14,45 @@
 
 namespace interflect::detail {
 
-/// Irradiance without occluders, which is the mean of LightSources::sample(). Immutable, thread-safe. The cost is
-/// linear in the number of sources, so it is available for few sources only.
+/// Irradiance without occluders, which is the mean of LightSources::sample(), by groups of near sources of a kind,
+/// called lamps. Immutable, thread-safe. The cost is linear in the number of sources, so it is available for few
+/// sources only.
 class UnoccludedLight {
   public:
+    static constexpr std::size_t max_lamps_of_kind = 16, max_lamps = max_lamps_of_kind * source_kinds.size();
+
+    struct Source {
+        std::uint32_t index;  ///< SourceSample::index.
+        V3f place{0, 0, 0};   ///< Centre [m]; of a sun, its unit direction.
+    };
+
     /// Arguments must outlive this.
     UnoccludedLight(const Scene& scene, std::span<const PatchGeometry> geometry);
 
-    /// Whether at() is available for a kind: its sources are few, and emitting patches have no texture.
-    bool has(SourceKind kind) const;
-    /// Whether at() uses u and v.
-    bool samples_sources() const { return !lamps_.empty() || !suns_.empty(); }
-    /// Whether at() has no noise.
-    bool is_exact(SourceKind kind) const { return is_exact_[static_cast<std::size_t>(kind)]; }
+    /// Whether the light of a kind is available: its sources are few, and emitting patches have no texture.
+    bool has(SourceKind kind) const { return is_available_[static_cast<std::size_t>(kind)]; }
+    /// Whether add() uses u and v.
+    bool samples_sources() const { return !luminaires_.empty(); }
 
-    /// Returns the irradiance at x on a surface with normal n [as H]: exact for emitting patches (Lambert's formula for
-    /// polygons), points and suns above the horizon. For other luminaires it is an unbiased estimate from 16 stratified
-    /// points.
-    /// @param u, v  In (0, 1), uniform: place the strata.
-    Rgb at(SourceKind kind, const V3f& x, const V3f& n, float u, float v) const;
+    std::size_t lamp_count() const { return is_exact_.size(); }
+    /// Returns the first lamp of each kind, and the one behind the last.
+    const std::array<std::pair<std::size_t, std::size_t>, source_kinds.size()>& lamps_by_kind() const {
+        return lamps_by_kind_;
+    }
+    /// Returns the lamp of a source. @param source  SourceSample::index, of a kind that is available.
+    std::uint32_t lamp_of(SourceKind kind, std::uint32_t source) const {
+        return (kind == SourceKind::patches ? lamp_of_patch_ : lamp_of_luminaire_)[source];
+    }
+    /// Whether the light of a lamp has no noise.
+    bool is_exact(std::size_t lamp) const { return is_exact_[lamp] != 0; }
+
+    /// Adds the irradiance at x on a surface with normal n by each lamp [as H]: exact for emitting patches (Lambert's
+    /// formula for polygons), points and suns above the horizon. For other luminaires it is an unbiased estimate from
+    /// 16 stratified points.
+    /// @param u, v       In (0, 1), uniform: place the strata.
+    /// @param is_needed  By lamp. The light of other lamps is not added, or only in part.
+    void add(const V3f& x, const V3f& n, float u, float v, std::span<const std::uint8_t> is_needed,
+             std::span<Rgb> by_lamp) const;
 
   private:
     /// Eight emitting patches. Each coordinate has an array of its own, which lets compilers generate vector code.
@@ -51,16 +72,17 @@ class UnoccludedLight {
         };
         Irradiance at(const V3f& p, const V3f& n) const;
     };
-    Rgb by_patches(const V3f& x, const V3f& n) const;
+    void add_lamps(SourceKind kind, std::span<Source> sources);
     float by_patch(PatchIndex patch, const V3f& x, const V3f& n) const;
 
     const Scene& scene_;
     std::span<const PatchGeometry> geometry_;
-    std::vector<PatchGroup> groups_;
-    std::size_t patch_count_ = 0;
-    std::vector<std::uint32_t> lamps_, suns_;
-    std::array<bool, source_kinds.size()> is_exact_{true, true, true};
-    bool has_texture_ = false;
+    std::vector<PatchGroup> groups_;  // in the order of the lamps
+    std::vector<std::uint32_t> luminaires_;
+    std::vector<std::uint32_t> lamp_of_patch_, lamp_of_luminaire_;
+    std::vector<std::uint8_t> is_exact_;  // by lamp
+    std::array<std::pair<std::size_t, std::size_t>, source_kinds.size()> lamps_by_kind_{};
+    std::array<bool, source_kinds.size()> is_available_{};
 };
 
 /// Returns the irradiance at x, on a surface with normal n, from a convex polygon of unit radiance. The part of the

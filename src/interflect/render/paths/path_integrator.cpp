@@ -45,7 +45,8 @@ void PathIntegrator::trace(std::span<SampleBatch> batches) {
     vertex_ = 1;
     light_.assign(2 * batches.size(), {});
     paths_.clear();
-    first_points_.clear();
+    record_lookups_.clear();
+    direct_light_.clear();
     counts_ = {};
     make_keys(batches);
     // Find the first points: points visible to the camera, or points on the gauges
@@ -62,7 +63,7 @@ void PathIntegrator::trace(std::span<SampleBatch> batches) {
         find_next_vertices();
     }
     // In hybrid shading, combine the shadow rays of first points with their unoccluded light
-    first_points_.add_direct(light_);
+    direct_light_.add_to(light_);
     store(batches);
 }
 
@@ -239,7 +240,7 @@ void PathIntegrator::illuminate_vertices() {
         if (vertex_ == 1) path.sampling.rays = plan_.first_shadow_rays;
         // With a record, light_first_point() adds the indirect light and connects the path to the sources
         if (vertex_ == 1 && plan_.hybrid && light_first_point(path)) continue;
-        if (vertex_ > 1 || plan_.has_direct) connect_to_sources(path, none);
+        if (vertex_ > 1 || plan_.has_direct) connect_to_sources(path, false);
         if (plan_.known) connect_to_known_light(path);
         if (plan_.virtual_lights) connect_to_virtual_lights(path);
     }
@@ -247,19 +248,20 @@ void PathIntegrator::illuminate_vertices() {
 }
 
 bool PathIntegrator::light_first_point(Path& path) {
-    const FirstPoints::Lookup lookup = first_points_.add_indirect(path, light_[path.half_batch]);
+    const RecordLookups::Lookup lookup = record_lookups_.add_indirect(path, light_[path.half_batch]);
     if (!lookup.is_found) return false;
     path.sampling = sampling_with_record(lookup.guide);
     // Compute unoccluded light; shadow rays estimate the occlusion
     LightSample numbers{};
     if (plan_.scene.unoccluded_light.samples_sources())
         numbers = light_sample(keys_[path.half_batch], vertex_, LightStream::unoccluded, path.index_in_sequence);
-    connect_to_sources(path, first_points_.add(path, numbers));
+    direct_light_.add_point(path, numbers);
+    connect_to_sources(path, true);
     return true;
 }
 
 SourceSampling PathIntegrator::sampling_with_record(std::uint32_t guide) const {
-    // FirstPoints estimates the visible part of the unoccluded light of patches by shadow rays. Sampled directions
+    // DirectLight estimates the visible part of the unoccluded light of patches by shadow rays. Sampled directions
     // would add this light a second time.
     const bool directions_find_patches = !plan_.scene.unoccluded_light.has(SourceKind::patches);
     const Skies& skies = plan_.sources().skies();
@@ -272,20 +274,20 @@ SourceSampling PathIntegrator::sampling_with_record(std::uint32_t guide) const {
             .directions_find_patches = directions_find_patches};
 }
 
-void PathIntegrator::connect_to_sources(const Path& path, std::uint32_t first_point) {
+void PathIntegrator::connect_to_sources(const Path& path, bool is_first_point) {
     for (const SourceKind kind : source_kinds) {
         if (kind == SourceKind::suns && vertex_ == 1 && !plan_.has_direct_sunlight) continue;
         const std::uint32_t count = plan_.sources().useful_rays(kind, path.sampling.rays);
-        const std::uint32_t receiving_point = plan_.scene.unoccluded_light.has(kind) ? first_point : none;
+        const bool is_of_point = is_first_point && plan_.scene.unoccluded_light.has(kind);
         for (std::uint32_t number = 0; number < count; ++number)
-            connect_to_source(path, {kind, number, count}, receiving_point);
+            connect_to_source(path, {kind, number, count}, is_of_point);
     }
     const std::uint32_t sky_rays = path.sampling.rays;
     for (std::uint32_t number = 0; number < sky_rays; ++number)
         connect_to_sky(path, path.index_in_sequence * sky_rays + number);
 }
 
-void PathIntegrator::connect_to_source(const Path& path, const SourceRay& ray, std::uint32_t first_point) {
+void PathIntegrator::connect_to_source(const Path& path, const SourceRay& ray, bool is_of_point) {
     const LightSample numbers = light_sample(keys_[path.half_batch], vertex_, stream_of(ray.kind),
                                              path.index_in_sequence * ray.count + ray.number);
     const SourceSample source = plan_.sources().sample(ray.kind, path.position, path.normal, numbers);
@@ -294,11 +296,9 @@ void PathIntegrator::connect_to_source(const Path& path, const SourceRay& ray, s
     const Rgb irradiance = source.irradiance / count;
     shadow_rays_.add({path.position, source.direction}, source.patch, source.distance);
     Connection connection{.half_batch = path.half_batch, .bounces = vertex_};
-    if (first_point != none) {
-        first_points_.add_sampled(first_point, ray.kind, irradiance);
+    if (is_of_point) {
         connection.light = irradiance;
-        connection.first_point = first_point;
-        connection.kind = ray.kind;
+        connection.direct_ray = direct_light_.add_ray(ray.kind, source.index, irradiance);
     } else {
         float weight = 1;
         if (source.density > 0 && path.sampling.directions_find_patches)
@@ -339,8 +339,8 @@ void PathIntegrator::add_light_of_shadow_rays() {
         const Connection& connection = connections_[i];
         if (!(largest_channel(transmittance[i]) > 0)) continue;
         const Rgb light = connection.light * transmittance[i];
-        if (connection.first_point != none)
-            first_points_.add_visible(connection.first_point, connection.kind, light);
+        if (connection.direct_ray != none)
+            direct_light_.set_visible(connection.direct_ray, light);
         else
             add(connection.half_batch, connection.bounces, light);
     }

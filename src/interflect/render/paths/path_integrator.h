@@ -4,7 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "interflect/render/paths/first_points.h"
+#include "interflect/render/direct/direct_light.h"
+#include "interflect/render/paths/record_lookups.h"
 #include "interflect/render/rays/path_plan.h"
 #include "interflect/render/rays/path_rays.h"
 #include "interflect/render/rays/sample_batch.h"
@@ -18,14 +19,15 @@ namespace interflect::detail {
 /// At each vertex, shadow rays sample the light sources, and a cosine-distributed direction continues the path. If both
 /// can find a light source, the balance heuristic weights them (Veach and Guibas 1995). The estimate is unbiased,
 /// unless the plan ends paths at known light (the elements of a solution, whose errors bias it) or looks up records
-/// (FirstPoints). The estimate omits:
+/// (RecordLookups). The estimate omits:
 /// - light that mirrors reflect, if the camera does not see the mirror,
 /// - light behind more than 32 panes and mirrors,
 /// - paths that panes and mirrors reduce to a throughput below 0.001 (find_surfaces()).
 class PathIntegrator {
   public:
     /// @param plan  Must outlive this.
-    explicit PathIntegrator(const PathPlan& plan) : plan_(plan), first_points_(plan) {}
+    explicit PathIntegrator(const PathPlan& plan)
+        : plan_(plan), record_lookups_(plan), direct_light_(plan.scene.unoccluded_light) {}
 
     /// Traces the paths of all batches and stores their light there. Later calls reuse the memory.
     void trace(std::span<SampleBatch> batches);
@@ -36,10 +38,9 @@ class PathIntegrator {
     /// Light that a shadow ray contributes if it is unoccluded.
     struct Connection {
         std::uint32_t half_batch;
-        std::uint32_t bounces;             // number of reflections between emitter and camera
-        Rgb light{0, 0, 0};                // radiance at the camera or, for first points, irradiance
-        std::uint32_t first_point = none;  // point of FirstPoints that receives the light; none: the path
-        SourceKind kind = SourceKind::patches;
+        std::uint32_t bounces;            // number of reflections between emitter and camera
+        Rgb light{0, 0, 0};               // radiance at the camera or, for DirectLight, irradiance
+        std::uint32_t direct_ray = none;  // ray of DirectLight that receives the light; none: the path
     };
     /// Shadow ray from a vertex to the sources of a kind.
     struct SourceRay {
@@ -89,9 +90,11 @@ class PathIntegrator {
     bool light_first_point(Path& path);
     /// Returns the sampling at a first point with recorded indirect light. @param guide  Guide of the record, or none.
     SourceSampling sampling_with_record(std::uint32_t guide) const;
-    /// Sends shadow rays to the light sources and the sky. @param first_point  As in Connection.
-    void connect_to_sources(const Path& path, std::uint32_t first_point);
-    void connect_to_source(const Path& path, const SourceRay& ray, std::uint32_t first_point);
+    /// Sends shadow rays to the light sources and the sky.
+    /// @param is_first_point  Whether the path's vertex is the last point of DirectLight.
+    void connect_to_sources(const Path& path, bool is_first_point);
+    /// @param is_of_point  Whether DirectLight receives the light.
+    void connect_to_source(const Path& path, const SourceRay& ray, bool is_of_point);
     /// @param index  Index of the shadow ray in the sequence of all rays from this vertex to the sky.
     void connect_to_sky(const Path& path, std::uint32_t index);
     V3f sample_sky_direction(const Path& path, std::uint32_t index) const;
@@ -125,7 +128,8 @@ class PathIntegrator {
     PathRays paths_;
     ShadowRays shadow_rays_;
     std::vector<Connection> connections_;  // one for each shadow ray
-    FirstPoints first_points_;
+    RecordLookups record_lookups_;
+    DirectLight direct_light_;
     RayCounts counts_;
 };
 

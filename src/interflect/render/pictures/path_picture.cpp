@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -31,6 +32,30 @@ constexpr int min_parts = 8;
 constexpr int largest_half_batch = 64;
 bool has_time_limit(const PictureOptions& options) { return std::isfinite(options.time); }
 
+/// Returns the pixels of a picture in nested blocks of 2 x 2 to 32 x 32, so that consecutive pixels are neighbours,
+/// which see similar light. Returns gauges in their order.
+std::vector<std::uint32_t> order_of_pixels(const PathPlan& plan) {
+    const auto width = static_cast<std::uint32_t>(plan.options.width),
+               height = static_cast<std::uint32_t>(plan.options.height);
+    std::vector<std::uint32_t> order(std::size_t{width} * height);
+    std::iota(order.begin(), order.end(), 0u);
+    if (!plan.start.camera) return order;
+    constexpr std::uint32_t levels = 5, block = 1 << levels;
+    const auto even_bits = [](std::uint32_t word) {
+        std::uint32_t bits = 0;
+        for (std::uint32_t i = 0; i < levels; ++i) bits |= (word >> (2 * i) & 1) << i;
+        return bits;
+    };
+    auto next = order.begin();
+    for (std::uint32_t top = 0; top < height; top += block)
+        for (std::uint32_t left = 0; left < width; left += block)
+            for (std::uint32_t i = 0; i < block * block; ++i) {
+                const std::uint32_t column = left + even_bits(i), row = top + even_bits(i >> 1);
+                if (column < width && row < height) *next++ = row * width + column;
+            }
+    return order;
+}
+
 /// Draws a picture in rounds. The first round gives every pixel a few samples. The number of samples that a pixel needs
 /// is estimated from those of its neighbours. Later rounds multiply these numbers by a factor that is common to the
 /// picture. So the number of samples of a pixel does not depend on their values, and its mean is unbiased (up to the
@@ -44,7 +69,8 @@ class PathPicture {
           monitor_(monitor),
           time_left_(time_left),
           shared_(batches),
-          pixels_(static_cast<std::size_t>(options_.width) * static_cast<std::size_t>(options_.height)) {}
+          pixels_(static_cast<std::size_t>(options_.width) * static_cast<std::size_t>(options_.height)),
+          order_(order_of_pixels(plan)) {}
 
     void trace() {
         // Choose the number of samples of each half in the first round, and its limit in later rounds
@@ -202,7 +228,8 @@ class PathPicture {
         bool has_traced = false;
         for (bool more = true; more;) {
             more = false;
-            for (std::uint32_t i = 0; i < pixels_.size() && !is_over(); ++i) {
+            for (const std::uint32_t i : order_) {
+                if (is_over()) break;
                 if (present[i] >= wanted[i]) continue;
                 if (!more) renew_virtual_lights(chunk);
                 chunk.push_back(next_batch(i, present[i], wanted[i]));
@@ -316,7 +343,8 @@ class PathPicture {
     SharedBatches& shared_;
     bool has_all_pixels_ = false;
     std::vector<PixelStatistics> pixels_;
-    double expected_samples_ = 0;  // expected number of samples of each half, summed over the pixels
+    const std::vector<std::uint32_t> order_;  // in which pixels are traced
+    double expected_samples_ = 0;             // expected number of samples of each half, summed over the pixels
     std::int64_t samples_done_ = 0;
     double error_ = std::numeric_limits<double>::infinity();  // last computed error of the picture
     std::int64_t samples_of_error_ = 0;                       // samples_done_ when error_ was computed

@@ -24,7 +24,7 @@ struct PathStart {
     float pixel_size = 0;  ///< Size of a pixel of a parallel camera [m]; else 0.
 };
 
-/// Data for the hybrid shading of first points: direct light by FirstPoints, indirect light from records.
+/// Data for the hybrid shading of first points: direct light by DirectLight, indirect light from records.
 struct HybridLight {
     const IndirectField* field = nullptr;  ///< Records of indirect light; null: direct light only.
     const SkyGuide* guide = nullptr;       ///< Directions to the sky around the records; may be null.

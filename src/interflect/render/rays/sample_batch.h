@@ -66,7 +66,7 @@ enum class Tracing : std::uint8_t {
 };
 
 /// Paths of a pixel or gauge: two halves of equal size, whose difference shows the error. They are independent, except
-/// that hybrid shading shares lookups and fits coefficients across them (FirstPoints).
+/// that hybrid shading shares lookups and fits coefficients across them (RecordLookups, DirectLight).
 struct SampleBatch {
     std::uint32_t pixel = 0;
     std::uint32_t number = 0;       ///< Number of the batch of its pixel. Batches of different numbers are independent.
