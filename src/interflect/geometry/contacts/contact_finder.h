@@ -36,6 +36,7 @@ class ContactFinder {
     float reach() const;
     bool plane_meets(const Imath::Box3f& box) const;
     void add_contacts_with(const Facet& other);
+    bool has_contacts() const { return !found_.empty(); }
     /// Returns the segments of those connected components that are at least `min_extent` [m] wide.
     std::vector<PlanarSegment> segments(double min_extent);
 

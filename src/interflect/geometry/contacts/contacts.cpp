@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <span>
 #include <utility>
@@ -14,8 +15,8 @@
 #include "interflect/geometry/contacts/face_cutter.h"
 #include "interflect/geometry/contacts/facet.h"
 #include "interflect/geometry/polygons/add_face.h"
-#include "interflect/geometry/search/box_tree.h"
 #include "interflect/geometry/search/vertex_weld.h"
+#include "interflect/geometry/search/wide_box_tree.h"
 #include "interflect/geometry/surfaces/flat_surfaces.h"
 #include "interflect/geometry/textures/texture_mapping.h"
 
@@ -53,11 +54,12 @@ double longest_sliver(const Facet& facet, double surface_area) {
 
 CutFacet cut_facet(ContactFinder& finder, const Facet& facet, double surface_area, const ContactOptions& options) {
     CutFacet result;
+    PieceShape shape{.longest_sliver = longest_sliver(facet, surface_area)};
+    if (!finder.has_contacts() && std::isinf(shape.longest_sliver)) return result;
     std::vector<PlanarSegment> segments = finder.segments(static_cast<double>(options.min_extent));
     CutPolygon cut = cut_polygon(finder.polygon(), std::move(segments), facet.detail(), options.max_pieces_per_face);
     result.reached_limit = cut.reached_limit;
     result.contacts = std::move(cut.contacts);
-    PieceShape shape{.longest_sliver = longest_sliver(facet, surface_area)};
     if (cut.pieces.size() > 1) {
         shape.largest_aspect = static_cast<double>(options.largest_aspect);
         shape.min_width = std::max(2 * static_cast<double>(options.min_extent), narrow * facet.diameter);
@@ -68,21 +70,29 @@ CutFacet cut_facet(ContactFinder& finder, const Facet& facet, double surface_are
 }
 
 /// Returns, for each facet, the area of its flat surface [m^2].
-std::vector<double> areas_of_surfaces(const Scene& scene, const std::vector<Facet>& facets) {
-    const std::vector<std::uint32_t> surfaces = flat_surfaces(scene);
+std::vector<double> areas_of_surfaces(const Scene& scene, const std::vector<std::uint32_t>& surfaces,
+                                      const std::vector<Facet>& facets) {
     std::vector<double> area(scene.patches.size(), 0.0), result;
     for (const Facet& facet : facets) area[surfaces[facet.face]] += facet.area();
     for (const Facet& facet : facets) result.push_back(area[surfaces[facet.face]]);
     return result;
 }
 
-std::vector<CutFacet> cut_facets(const Scene& scene, const std::vector<Facet>& facets, const ContactOptions& options) {
-    const std::vector<std::uint32_t> rank = rank_by_flat_surface(scene);
-    const std::vector<double> surface_areas = areas_of_surfaces(scene, facets);
-    std::vector<Boxed> tree;
-    tree.reserve(facets.size());
-    for (std::uint32_t i = 0; i < facets.size(); ++i) tree.push_back({facets[i].box(0), i});
-    arrange_box_tree(tree);
+/// Boxes of the facets, enlarged by the rounding errors of their corners.
+WideBoxTree tree_of(const std::vector<Facet>& facets) {
+    std::vector<Boxed> boxes(facets.size());
+    parallel_for_indices(facets.size(), [&](std::size_t i) {
+        boxes[i] = {facets[i].box(static_cast<float>(facets[i].rounding)), static_cast<std::uint32_t>(i)};
+    });
+    return WideBoxTree(std::move(boxes));
+}
+
+/// @param surfaces  Result of flat_surfaces().
+std::vector<CutFacet> cut_facets(const Scene& scene, const std::vector<std::uint32_t>& surfaces,
+                                 const std::vector<Facet>& facets, const ContactOptions& options) {
+    const std::vector<std::uint32_t> rank = rank_by_flat_surface(scene, surfaces);
+    const std::vector<double> surface_areas = areas_of_surfaces(scene, surfaces, facets);
+    const WideBoxTree tree = tree_of(facets);
     const double gap = gap_over_min_extent * static_cast<double>(options.min_extent);
     std::vector<CutFacet> cut(facets.size());
     parallel_for_ranges(facets.size(), facets_per_task, [&](std::size_t begin, std::size_t end) {
@@ -90,10 +100,8 @@ std::vector<CutFacet> cut_facets(const Scene& scene, const std::vector<Facet>& f
             if (facets[i].area() < static_cast<double>(options.min_extent) * static_cast<double>(options.min_extent))
                 continue;
             ContactFinder finder(scene, facets[i], rank, static_cast<double>(options.touch_distance), gap);
-            const Imath::Box3f box = facets[i].box(finder.reach());
-            visit_box_tree(
-                std::span<const Boxed>(tree),
-                [&](const Imath::Box3f& b) { return b.intersects(box) && finder.plane_meets(b); },
+            tree.search(
+                facets[i].box(finder.reach()), [&](const Imath::Box3f& b) { return finder.plane_meets(b); },
                 [&](std::uint32_t j) { finder.add_contacts_with(facets[j]); });
             cut[i] = cut_facet(finder, facets[i], surface_areas[i], options);
         }
@@ -182,9 +190,10 @@ std::vector<FacetRange> choose_cut_faces(const Scene& scene, const std::vector<F
 }
 
 /// Returns Patch::surface of each patch: `none` unless its flat surface contains a cut face or has a number.
-std::vector<std::uint32_t> numbers_of_cut_surfaces(const Scene& scene, const std::vector<Facet>& facets,
+/// @param surface  Result of flat_surfaces().
+std::vector<std::uint32_t> numbers_of_cut_surfaces(const Scene& scene, std::vector<std::uint32_t> surface,
+                                                   const std::vector<Facet>& facets,
                                                    const std::vector<FacetRange>& faces) {
-    std::vector<std::uint32_t> surface = flat_surfaces(scene);
     std::vector<bool> is_numbered(scene.patches.size(), false);
     for (const FacetRange& face : faces)
         if (face.patches > 0) is_numbered[surface[facets[face.first].face]] = true;
@@ -200,10 +209,11 @@ std::vector<std::uint32_t> numbers_of_cut_surfaces(const Scene& scene, const std
 Scene cut_at_contacts(const Scene& scene, const ContactOptions& options) {
     require_no_faults(scene_faults(scene), "cannot cut the faces of", scene);
     const std::vector<Facet> facets = facets_of(scene);
-    const std::vector<CutFacet> cut = cut_facets(scene, facets, options);
+    std::vector<std::uint32_t> flat = flat_surfaces(scene);
+    const std::vector<CutFacet> cut = cut_facets(scene, flat, facets, options);
     Scene result = scene;
     const std::vector<FacetRange> faces = choose_cut_faces(scene, facets, cut, options, result.warnings);
-    const std::vector<std::uint32_t> surfaces = numbers_of_cut_surfaces(scene, facets, faces);
+    const std::vector<std::uint32_t> surfaces = numbers_of_cut_surfaces(scene, std::move(flat), facets, faces);
     result.patches.clear();
     PieceWriter writer(scene, surfaces, result);
     for (const FacetRange& face : faces) {

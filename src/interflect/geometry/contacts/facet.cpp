@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "interflect/base/threads/parallel.h"
 #include "interflect/geometry/search/bounds.h"
 #include "interflect/scene/faces/patch_area.h"
 #include "interflect/scene/faces/planarity.h"
@@ -45,19 +47,28 @@ Imath::Box3f Facet::box(float margin) const {
 }
 
 std::vector<Facet> facets_of(const Scene& scene) {
-    std::vector<Facet> facets;
-    for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
+    // Count the facets of each patch, then make them
+    const std::size_t patches = scene.patches.size();
+    std::vector<std::uint32_t> end(patches);
+    parallel_for_indices(patches, [&](std::size_t i) {
         const Patch& patch = scene.patches[i];
-        if (patch.other_side < i) continue;
+        if (patch.other_side < i) return;
+        end[i] = patch.is_triangle() || is_planar(scene, patch.vertices) ? 1 : 2;
+    });
+    std::partial_sum(end.begin(), end.end(), end.begin());
+    std::vector<Facet> facets(patches == 0 ? 0 : end.back());
+    parallel_for_indices(patches, [&](std::size_t i) {
+        const std::uint32_t begin = i == 0 ? 0 : end[i - 1], count = end[i] - begin;
+        const auto face = static_cast<std::uint32_t>(i);
+        const Patch& patch = scene.patches[i];
         const auto& v = patch.vertices;
-        const Facet whole(scene, i, std::span(v).first(static_cast<std::size_t>(patch.vertex_count())));
-        if (patch.is_triangle() || is_planar(scene, v)) {
-            facets.push_back(whole);
-        } else {  // Embree splits along the same diagonal
-            facets.emplace_back(scene, i, std::array{v[0], v[1], v[3]});
-            facets.emplace_back(scene, i, std::array{v[2], v[3], v[1]});
+        if (count == 1)
+            facets[begin] = Facet(scene, face, std::span(v).first(static_cast<std::size_t>(patch.vertex_count())));
+        if (count == 2) {  // Embree splits along the same diagonal
+            facets[begin] = Facet(scene, face, std::array{v[0], v[1], v[3]});
+            facets[begin + 1] = Facet(scene, face, std::array{v[2], v[3], v[1]});
         }
-    }
+    });
     return facets;
 }
 

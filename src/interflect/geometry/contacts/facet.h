@@ -17,11 +17,12 @@ struct Facet {
     std::uint32_t face = none;  ///< Index of the face's front patch.
     std::array<std::uint32_t, 4> vertices{none, none, none, none};
     std::size_t count = 0;
-    std::array<Imath::V3d, 4> corners;  ///< [m]
-    Imath::V3d normal;                  ///< Unit length.
-    double diameter = 0;                ///< [m]
-    double rounding = 0;                ///< Rounding error of corners [m].
+    std::array<Imath::V3d, 4> corners{};  ///< [m]
+    Imath::V3d normal{0, 0, 0};           ///< Unit length.
+    double diameter = 0;                  ///< [m]
+    double rounding = 0;                  ///< Rounding error of corners [m].
 
+    Facet() = default;
     /// @param corner_vertices  Indices of three or four vertices.
     Facet(const Scene& scene, std::uint32_t face_index, std::span<const std::uint32_t> corner_vertices);
 

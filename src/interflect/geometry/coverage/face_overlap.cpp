@@ -6,11 +6,12 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "interflect/base/threads/parallel.h"
 #include "interflect/core.h"
 #include "interflect/geometry/search/bounds.h"
-#include "interflect/geometry/search/box_tree.h"
+#include "interflect/geometry/search/wide_box_tree.h"
 #include "interflect/scene/faces/patch_area.h"
 
 namespace interflect::detail {
@@ -65,29 +66,44 @@ ClippedFace clipped(const ClippedFace& polygon, const HalfSpace& half_space) {
     return result;
 }
 
+/// Normal of a face times twice its area, and twice its area [m^2].
+struct FaceArea {
+    V3d doubled_vector{0};
+    double doubled = 0;
+};
+
+/// Plane through the mean of a face's corners.
+HalfSpace plane_of(const ClippedFace& polygon, const FaceArea& area) {
+    HalfSpace plane{area.doubled_vector / area.doubled};
+    for (std::size_t i = 0; i < polygon.count; ++i)
+        plane.offset += plane.normal.dot(polygon.corners[i]) / static_cast<double>(polygon.count);
+    return plane;
+}
+
+/// Tests which smaller faces overlap one face.
 class LargerFace {
   public:
-    LargerFace(const Scene& scene, std::uint32_t face, std::span<const float> tolerance)
-        : scene_(scene), face_(face), tolerance_(tolerance), polygon_(polygon_of(scene, scene.patches[face])) {
-        const V3d doubled = doubled_area_vector<double>(polygon_.face_corners());
-        doubled_area_ = doubled.length();
-        plane_.normal = doubled / doubled_area_;
-        for (std::size_t i = 0; i < polygon_.count; ++i)
-            plane_.offset += plane_.normal.dot(polygon_.corners[i]) / static_cast<double>(polygon_.count);
-        for (std::size_t i = 0; i < polygon_.count; ++i) {
-            const V3d &a = polygon_.corners[i], &b = polygon_.corners[(i + 1) % polygon_.count];
-            const V3d inward = plane_.normal.cross(b - a).normalized();
-            inside_[i] = {inward, inward.dot(a)};
-        }
-    }
+    LargerFace(const Scene& scene, std::uint32_t face, std::span<const FaceArea> areas,
+               std::span<const float> tolerance)
+        : scene_(scene),
+          face_(face),
+          areas_(areas),
+          tolerance_(tolerance),
+          polygon_(polygon_of(scene, scene.patches[face])),
+          plane_(plane_of(polygon_, areas[face])) {}
 
     bool plane_meets(const Imath::Box3f& box) const {
         return meets_plane(
             box, plane_.normal, [&](const V3d& x) { return plane_.height(x); }, static_cast<double>(tolerance_[face_]));
     }
 
-    bool is_overlapped_by(std::uint32_t face) const {
-        if (face == face_) return false;
+    bool is_overlapped_by(std::uint32_t face) {
+        const FaceArea& area = areas_[face];
+        if (face == face_ || !is_smaller(face, area.doubled)) return false;
+        const double facing = area.doubled_vector.dot(plane_.normal);
+        if (std::abs(facing) < min_facing * area.doubled) return false;  // true for most neighbours
+        if (facing < 0 && is_one_sided(face_) && is_one_sided(face)) return false;
+        find_inside();
         ClippedFace shared = polygon_of(scene_, scene_.patches[face]);
         const double tolerance = pair_tolerance(tolerance_, {face_, face});
         const auto narrowed = [&](HalfSpace half_space) {
@@ -95,11 +111,7 @@ class LargerFace {
             return half_space;
         };
         for (std::size_t i = 0; i < polygon_.count; ++i)
-            if (lies_outside(shared, narrowed(inside_[i]))) return false;  // true for most neighbours
-        const V3d doubled = doubled_area_vector<double>(shared.face_corners());
-        const double facing = doubled.dot(plane_.normal);
-        if (!is_smaller(face, doubled.length()) || std::abs(facing) < min_facing * doubled.length()) return false;
-        if (facing < 0 && is_one_sided(face_) && is_one_sided(face)) return false;
+            if (lies_outside(shared, narrowed(inside_[i]))) return false;
         for (std::size_t i = 0; i < polygon_.count && shared.count > 0; ++i)
             shared = clipped(shared, narrowed(inside_[i]));
         const auto end = shared.corners.begin() + static_cast<std::ptrdiff_t>(shared.count);
@@ -110,47 +122,73 @@ class LargerFace {
   private:
     bool is_one_sided(std::uint32_t face) const { return scene_.patches[face].other_side == none; }
     bool is_smaller(std::uint32_t face, double doubled_area) const {
-        return doubled_area < doubled_area_ || (doubled_area == doubled_area_ && face < face_);
+        return doubled_area < areas_[face_].doubled || (doubled_area == areas_[face_].doubled && face < face_);
+    }
+
+    void find_inside() {
+        if (has_inside_) return;
+        has_inside_ = true;
+        for (std::size_t i = 0; i < polygon_.count; ++i) {
+            const V3d &a = polygon_.corners[i], &b = polygon_.corners[(i + 1) % polygon_.count];
+            const V3d inward = plane_.normal.cross(b - a).normalized();
+            inside_[i] = {inward, inward.dot(a)};
+        }
     }
 
     const Scene& scene_;
     std::uint32_t face_;
+    std::span<const FaceArea> areas_;
     std::span<const float> tolerance_;
     ClippedFace polygon_;
-    double doubled_area_;  // [m^2]
     HalfSpace plane_;
-    std::array<HalfSpace, 4> inside_;
+    std::array<HalfSpace, 4> inside_;  // of the edges, once a face needs them
+    bool has_inside_ = false;
 };
 
-std::vector<Boxed> tree_of_faces(const Scene& scene, const std::vector<bool>& ignored,
-                                 std::span<const float> tolerance) {
-    std::vector<Boxed> tree;
+bool is_searched(const Scene& scene, const std::vector<bool>& ignored, PatchIndex i) {
+    return scene.patches[i].other_side >= i && !ignored[i];
+}
+
+std::vector<FaceArea> areas_of_faces(const Scene& scene) {
+    std::vector<FaceArea> areas(scene.patches.size());
+    parallel_for_ranges(areas.size(), search_grain, [&](std::size_t begin, std::size_t end) {
+        for (PatchIndex i(begin); i < end; ++i) {
+            if (scene.patches[i].other_side < i) continue;
+            const ClippedFace polygon = polygon_of(scene, scene.patches[i]);
+            const V3d doubled = doubled_area_vector<double>(polygon.face_corners());
+            areas[i] = {doubled, doubled.length()};
+        }
+    });
+    return areas;
+}
+
+WideBoxTree tree_of_faces(const Scene& scene, const std::vector<bool>& ignored, std::span<const float> tolerance) {
+    std::vector<Boxed> faces;
     for (PatchIndex i{0}; i < scene.patches.size(); ++i)
-        if (scene.patches[i].other_side >= i && !ignored[i]) tree.push_back({Imath::Box3f(), i});
-    parallel_for_ranges(tree.size(), search_grain, [&](std::size_t begin, std::size_t end) {
-        for (Boxed& face : std::span(tree).subspan(begin, end - begin))
+        if (is_searched(scene, ignored, i)) faces.push_back({Imath::Box3f(), i});
+    parallel_for_ranges(faces.size(), search_grain, [&](std::size_t begin, std::size_t end) {
+        for (Boxed& face : std::span(faces).subspan(begin, end - begin))
             face.box = widened(bounds_of(scene, scene.patches[face.index]), tolerance[face.index]);
     });
-    arrange_box_tree(tree);
-    return tree;
+    return WideBoxTree(std::move(faces));
 }
 
 }  // namespace
 
 std::vector<FacePair> overlapping_faces(const Scene& scene, const std::vector<bool>& ignored,
                                         std::span<const float> tolerance) {
-    const std::vector<Boxed> tree = tree_of_faces(scene, ignored, tolerance);
+    const WideBoxTree tree = tree_of_faces(scene, ignored, tolerance);
+    const std::vector<FaceArea> areas = areas_of_faces(scene);
     const std::size_t most = free_overlaps + max_overlaps_per_patch * scene.patches.size();
     std::atomic<std::size_t> count = 0;
     std::vector<std::vector<FacePair>> found((scene.patches.size() + search_grain - 1) / search_grain);
     parallel_for_ranges(scene.patches.size(), search_grain, [&](std::size_t begin, std::size_t end) {
-        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
-            if (scene.patches[i].other_side < i || ignored[i] || count > most) continue;
-            const LargerFace larger(scene, i, tolerance);
-            const Imath::Box3f box = widened(bounds_of(scene, scene.patches[i]), tolerance[i]);
-            visit_box_tree(
-                std::span<const Boxed>(tree),
-                [&](const Imath::Box3f& b) { return b.intersects(box) && larger.plane_meets(b); },
+        for (PatchIndex i(begin); i < end; ++i) {
+            if (!is_searched(scene, ignored, i) || count > most) continue;
+            LargerFace larger(scene, i, areas, tolerance);
+            tree.search(
+                widened(bounds_of(scene, scene.patches[i]), tolerance[i]),
+                [&](const Imath::Box3f& b) { return larger.plane_meets(b); },
                 [&](std::uint32_t j) {
                     if (count > most || !larger.is_overlapped_by(j)) return;
                     found[begin / search_grain].push_back({i, j});
