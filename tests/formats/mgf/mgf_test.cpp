@@ -106,6 +106,20 @@ TEST(Mgf, VertexIsWhereItIsWhenUsed) {
     EXPECT_EQ(scene.vertices[scene.patches[1].vertices[0]], V3f(0, 0, 5));
 }
 
+TEST(Mgf, VertexIsWhereTheTransformPlacesItInEachUse) {
+    const Scene scene = read_faces("f a b d e\nxf -t 0 0 1\nf a b d e\nxf\nf a b d e\n");
+    ASSERT_EQ(scene.patches.size(), 3u);
+    EXPECT_EQ(centre_of(scene, 0), V3f(.5f, .5f, 0));
+    EXPECT_EQ(centre_of(scene, 1), V3f(.5f, .5f, 1));
+    EXPECT_EQ(centre_of(scene, 2), V3f(.5f, .5f, 0));
+}
+
+TEST(Mgf, CopyOfAUsedVertexMoves) {
+    const Scene scene = read_faces("f a b d e\nv c = d\n p 1 .5 0\nf a b c\nf a b d\n");
+    ASSERT_EQ(scene.patches.size(), 3u);
+    EXPECT_NEAR(total_area(scene), 1 + .25 + .5, 1e-6);
+}
+
 TEST(Mgf, ContinuedLinesAndComments) {
     EXPECT_EQ(read_faces("# f a b d \\\n f nothing of this line is read \nf a \\\n  b \\\n  d\n").patches.size(), 1u);
 }

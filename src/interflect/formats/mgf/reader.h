@@ -91,8 +91,8 @@ class MgfReader {
     void refraction(MgfWords words);
     void texture(MgfWords words);
     void vertex(MgfWords words) { vertices_.enter(words); }
-    void point(MgfWords words) { vertices_.current().point = vector_argument(words); }
-    void normal(MgfWords words) { vertices_.current().normal = vector_argument(words).normalized(); }
+    void point(MgfWords words) { changed_vertex().point = vector_argument(words); }
+    void normal(MgfWords words) { changed_vertex().normal = vector_argument(words).normalized(); }
     void texture_coordinate(MgfWords words);
     void face(MgfWords words);
     void face_with_holes(MgfWords words);
@@ -110,6 +110,11 @@ class MgfReader {
     void environment(MgfWords words);
 
     MgfMaterial& changed_material();
+    MgfVertex& changed_vertex() {
+        vertices_.current().scene_index = none;
+        return vertices_.current();
+    }
+    std::uint32_t scene_vertex(MgfVertex& vertex, const Imath::V3d& world, const Imath::M44d& to_world);
     double fraction(std::string_view word);
     Imath::V3d normal_of(std::string_view vertex);
     V3f direction_of(std::string_view vertex);
@@ -119,7 +124,7 @@ class MgfReader {
     std::shared_ptr<const PhotometricWeb> photometric_web(std::string_view name);
     std::shared_ptr<const Texture> environment_image(std::string_view name);
     void add_luminaire(MeasuredLight light, bool by_top, const Imath::M44d& transform, const std::string& name);
-    void add_loop(MgfWords names);
+    void read_loop(MgfWords names, std::vector<std::uint32_t>& loop);
     std::uint32_t usable_material();
     void add_face();
     Tessellation tessellation();

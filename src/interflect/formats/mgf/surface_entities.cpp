@@ -19,30 +19,38 @@ void MgfReader::texture_coordinate(MgfWords words) {
     const V2f coordinate(static_cast<float>(number_argument(words[0])), static_cast<float>(number_argument(words[1])));
     if (const std::string fault = texture_coordinate_fault(coordinate); !fault.empty())
         throw MgfFault("this vertex " + fault);
-    vertices_.current().texture_coordinate = coordinate;
+    changed_vertex().texture_coordinate = coordinate;
     vertices_.current().has_texture_coordinate = true;
 }
 
-void MgfReader::add_loop(MgfWords names) {
+/// @param world  Position [m]. @param to_world  Transform of the vertex.
+std::uint32_t MgfReader::scene_vertex(MgfVertex& vertex, const V3d& world, const M44d& to_world) {
+    if (transforms_.empty() && vertex.scene_index != none) return vertex.scene_index;
+    V3d normal(0);  // multDirMatrix() suffices: MGF scales uniformly
+    if (vertex.normal != V3d(0)) to_world.multDirMatrix(vertex.normal, normal);
+    const std::uint32_t index = scene_.vertex(world, vertex.coordinate(), normal);
+    if (transforms_.empty()) vertex.scene_index = index;
+    return index;
+}
+
+void MgfReader::read_loop(MgfWords names, std::vector<std::uint32_t>& loop) {
     if (names.size() > options_.max_face_vertices)
         throw MgfFault(
             fmt::format("a face of {} vertices; at most {} are read", names.size(), options_.max_face_vertices));
-    if (!has_three_distinct(names)) throw MgfFault("a face, and each of its holes, needs three different vertices");
     const M44d to_world = total_transform();
-    std::vector<std::uint32_t>& loop = loops_.emplace_back();
+    const bool is_textured = materials_.current().is_textured();
+    loop.clear();
     outline_.clear();
     for (const std::string_view name : names) {
-        const MgfVertex& vertex = vertices_.find(name);
-        if (materials_.current().is_textured() && !vertex.has_texture_coordinate)
+        MgfVertex& vertex = vertices_.find(name);
+        if (is_textured && !vertex.has_texture_coordinate)
             throw MgfFault(fmt::format("vertex '{}' needs texture coordinates (uv): the material has a texture", name));
         outline_.push_back(vertex.point * to_world);
-        V3d normal;  // multDirMatrix() suffices: MGF scales uniformly
-        to_world.multDirMatrix(vertex.normal, normal);
-        loop.push_back(scene_.vertex(outline_.back(), vertex.coordinate(), normal));
+        loop.push_back(scene_vertex(vertex, outline_.back(), to_world));
     }
-    if (loops_.size() == 1) scene_.place_face(outline_);
-    // Mirroring reverses the orientation.
-    if (to_world.determinant() < 0) std::reverse(loop.begin(), loop.end());
+    if (&loop == &loops_.front()) scene_.place_face(outline_);
+    // Mirroring reverses the orientation; the axes and the unit of the file do not mirror.
+    if (!transforms_.empty() && to_world.determinant() < 0) std::reverse(loop.begin(), loop.end());
 }
 
 std::uint32_t MgfReader::usable_material() {
@@ -62,8 +70,8 @@ void MgfReader::face(MgfWords words) {
         scene_.leave_out("face with fewer than three different vertices is left out", here());
         return;
     }
-    loops_.clear();
-    add_loop(words);
+    loops_.resize(1);
+    read_loop(words, loops_[0]);
     add_face();
 }
 
@@ -72,7 +80,9 @@ void MgfReader::face_with_holes(MgfWords words) {
     std::size_t vertices = 0;
     for (auto begin = words.begin(); begin != words.end();) {
         const auto end = std::find(begin, words.end(), "-");
-        add_loop({begin, end});
+        if (!has_three_distinct({begin, end}))
+            throw MgfFault("a face, and each of its holes, needs three different vertices");
+        read_loop({begin, end}, loops_.emplace_back());
         vertices += loops_.back().size();
         begin = end == words.end() ? end : end + 1;
     }

@@ -1,17 +1,38 @@
 #include "interflect/formats/text/line_reader.h"
 
+#include <array>
+
 namespace interflect::detail {
 
 namespace {
 
-bool is_blank(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+enum class Kind : unsigned char { of_word, blank, backslash };
+
+constexpr std::array<Kind, 256> kinds = [] {
+    std::array<Kind, 256> result{};
+    result[' '] = Kind::blank;
+    for (std::size_t c = '\t'; c <= '\r'; ++c) result[c] = Kind::blank;
+    result['\\'] = Kind::backslash;
+    return result;
+}();
+
+Kind kind_of(char c) { return kinds[static_cast<unsigned char>(c)]; }
 
 }  // namespace
 
 bool LineReader::at_continuation(std::size_t offset) const {
-    if (text_[offset] != '\\') return false;
     const std::string_view rest = text_.substr(offset, 3);
     return rest.starts_with("\\\n") || rest == "\\\r\n";
+}
+
+std::size_t LineReader::end_of_word(std::size_t offset) const {
+    const std::string_view text = text_;
+    while (offset < text.size()) {
+        const Kind kind = kind_of(text[offset]);
+        if (kind != Kind::of_word && (kind == Kind::blank || at_continuation(offset))) break;
+        ++offset;
+    }
+    return offset;
 }
 
 bool LineReader::next() {
@@ -25,14 +46,14 @@ bool LineReader::next() {
                 line_goes_on = false;
                 ++next_.line;
                 ++i;
-            } else if (at_continuation(i)) {
+            } else if (kind_of(text_[i]) == Kind::blank) {
+                ++i;
+            } else if (kind_of(text_[i]) == Kind::backslash && at_continuation(i)) {
                 i = text_.find('\n', i) + 1;
                 ++next_.line;
-            } else if (is_blank(text_[i])) {
-                ++i;
             } else {
                 const std::size_t word = i;
-                while (i < text_.size() && !is_blank(text_[i]) && !at_continuation(i)) ++i;
+                i = end_of_word(i);
                 words_.push_back(text_.substr(word, i - word));
             }
         }

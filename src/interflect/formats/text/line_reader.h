@@ -33,7 +33,9 @@ class LineReader {
     void seek(const Position& position) { next_ = position; }
 
   private:
+    /// @param offset  Place of a backslash.
     bool at_continuation(std::size_t offset) const;
+    std::size_t end_of_word(std::size_t offset) const;
 
     std::string_view text_;
     Position next_;

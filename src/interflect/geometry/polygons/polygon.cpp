@@ -27,6 +27,12 @@ constexpr double height_noise = 4;
 
 V3d position(const Scene& scene, std::uint32_t vertex) { return V3d(scene.vertices[vertex]); }
 
+bool has_repeats(const Scene& scene, const Loop& loop) {
+    for (std::size_t i = 0; i < loop.size(); ++i)
+        if (scene.vertices[loop[i]] == scene.vertices[loop[i + 1 == loop.size() ? 0 : i + 1]]) return true;
+    return false;
+}
+
 Loop without_repeats(const Scene& scene, const Loop& loop) {
     Loop kept;
     for (const std::uint32_t v : loop)
@@ -203,8 +209,10 @@ std::vector<std::uint32_t> Triangulation::operator()(std::span<const Loop> loops
 
 PolygonResult add_polygon(Scene& scene, std::span<const std::vector<std::uint32_t>> loops, std::uint32_t material,
                           std::uint32_t object, bool two_sided) {
-    std::vector<Loop> clean;
-    for (const Loop& loop : loops) clean.push_back(without_repeats(scene, loop));
+    std::vector<Loop> changed;
+    if (std::any_of(loops.begin(), loops.end(), [&](const Loop& loop) { return has_repeats(scene, loop); }))
+        for (const Loop& loop : loops) changed.push_back(without_repeats(scene, loop));
+    const std::span<const Loop> clean = changed.empty() ? loops : std::span<const Loop>(changed);
     if (clean.empty()) return PolygonResult::degenerate;
     const Loop& outline = clean[0];
     const OutlinePlane plane(scene, outline);

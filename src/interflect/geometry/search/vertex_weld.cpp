@@ -27,8 +27,11 @@ std::uint64_t hash(const V3f& x, const VertexCoordinates& coordinates) {
 }  // namespace
 
 std::uint32_t& VertexWeld::slot_of(const V3f& position, const VertexCoordinates& coordinates) {
+    const bool are_bare =
+        scene_.texture_coordinates.empty() && scene_.lightmap_coordinates.empty() && scene_.normals.empty();
     const auto is_other = [&](std::uint32_t v) {
-        return scene_.vertices[v] != position || coordinates_of(scene_, v) != coordinates;
+        if (scene_.vertices[v] != position) return true;
+        return (are_bare ? VertexCoordinates{} : coordinates_of(scene_, v)) != coordinates;
     };
     const std::size_t mask = slots_.size() - 1;
     std::size_t i = hash(position, coordinates) & mask;

@@ -24,6 +24,7 @@ Imath::V3d vector_argument(MgfWords words) {
 }
 
 bool has_three_distinct(MgfWords words) {
+    if (words.size() > 2 && words[0] != words[1] && words[0] != words[2] && words[1] != words[2]) return true;
     const auto second = std::find_if(words.begin(), words.end(), [&](auto w) { return w != words.front(); });
     return std::any_of(second, words.end(), [&](auto w) { return w != words.front() && w != *second; });
 }
