@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <vector>
 
+#include "interflect/base/threads/parallel.h"
 #include "interflect/core.h"
 #include "interflect/scene/core/limits.h"
 #include "interflect/scene/core/view.h"
@@ -55,13 +57,28 @@ class Faults {
     std::vector<Fault> list_;
 };
 
+/// Calls check(index, faults) for the indices in [0, count), in parallel, and again in order where it finds faults.
+template <class Check>
+void check_each(std::size_t count, Faults& faults, const Check& check) {
+    constexpr std::size_t at_once = 4096;
+    std::vector<char> has_faults((count + at_once - 1) / at_once);
+    parallel_for_ranges(count, at_once, [&](std::size_t begin, std::size_t end) {
+        Faults found;
+        for (std::size_t i = begin; i < end; ++i) check(i, found);
+        has_faults[begin / at_once] = !found.empty();
+    });
+    for (std::size_t range = 0; range < has_faults.size(); ++range)
+        if (has_faults[range])
+            for (std::size_t i = range * at_once; i < std::min(count, (range + 1) * at_once); ++i) check(i, faults);
+}
+
 bool has_vertices(const Scene& scene, const Patch& patch) {
     return std::all_of(patch.vertices.begin(), patch.vertices.begin() + patch.vertex_count(),
                        [&](std::uint32_t v) { return v < scene.vertices.size(); });
 }
 
-void check_points(const Scene& scene, Faults& faults) {
-    const auto check = [&](const Imath::V3d& x, const Subject& point) {
+void check_points(const Scene& scene, Faults& all) {
+    const auto check = [](const Imath::V3d& x, const Subject& point, Faults& faults) {
         faults.check(is_finite(x), point, [&] { return point.text() + " is not finite"; });
         faults.check(!is_finite(x) || is_within_reach(x), point, [&] {
             return fmt::format("{} is ({:g}, {:g}, {:g}), farther than {:g} m from the origin", point.text(), x.x, x.y,
@@ -69,11 +86,13 @@ void check_points(const Scene& scene, Faults& faults) {
         });
     };
     const std::string origin = "the origin";
-    check(scene.origin, named(origin));
-    for (std::size_t i = 0; i < scene.vertices.size(); ++i) check(Imath::V3d(scene.vertices[i]), numbered("vertex", i));
+    check(scene.origin, named(origin), all);
+    check_each(scene.vertices.size(), all, [&](std::size_t i, Faults& faults) {
+        check(Imath::V3d(scene.vertices[i]), numbered("vertex", i), faults);
+    });
     for (std::size_t i = 0; i < scene.contacts.size(); ++i)
         for (const V3f& end : {scene.contacts[i].a, scene.contacts[i].b})
-            check(Imath::V3d(end), numbered("contact", i));
+            check(Imath::V3d(end), numbered("contact", i), all);
 }
 
 void check_material(const Scene& scene, const Material& m, Faults& faults) {
@@ -228,7 +247,8 @@ std::vector<Fault> scene_faults(const Scene& scene) {
     for (const Luminaire& l : scene.luminaires) check_luminaire(scene, l, faults);
     faults.add(sky_count_fault(scene), {}, the_scene);
     check_materials(scene, faults);
-    for (PatchIndex i{0}; i < scene.patches.size(); ++i) check_patch(scene, i, faults);
+    check_each(scene.patches.size(), faults,
+               [&](std::size_t i, Faults& found) { check_patch(scene, PatchIndex(i), found); });
     if (!scene.patches.empty()) faults.add(scene_width_fault(scene_width(scene)), {}, the_scene);
     for (const View& v : scene.views)
         faults.add(view_fault(v), named(v.name), [&] { return fmt::format("view '{}': ", v.name); });

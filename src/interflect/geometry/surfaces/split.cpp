@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
+#include <vector>
 
+#include "interflect/base/threads/parallel.h"
 #include "interflect/core.h"
 #include "interflect/geometry/polygons/add_face.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
@@ -110,14 +114,10 @@ Scene split_patches(const Scene& scene, float largest_edge, std::uint64_t max_pa
 double default_element_size(const Scene& scene) {
     constexpr double largest = 0.005;  // [m]
     constexpr double typical_side_over_size = 1000;
-    std::vector<float> areas;
-    areas.reserve(scene.patches.size());
-    double all = 0;
-    for (const Patch& patch : scene.patches) {
-        areas.push_back(patch_area(scene, patch));
-        all += areas.back();
-    }
-    std::sort(areas.begin(), areas.end());
+    std::vector<float> areas(scene.patches.size());
+    parallel_for_indices(areas.size(), [&](std::size_t i) { areas[i] = patch_area(scene, scene.patches[i]); });
+    const double all = std::accumulate(areas.begin(), areas.end(), 0.0);
+    parallel_sort(areas, std::less<>());
     double below = 0;
     for (const float area : areas)
         if ((below += area) >= all / 2)

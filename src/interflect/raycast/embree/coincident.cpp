@@ -31,8 +31,8 @@ std::vector<V3f> corners(const Scene& scene, const Patch& patch) {
 /// Hashes the positions of the corners, independently of their order.
 std::uint64_t corners_key(const Scene& scene, const Patch& patch) {
     std::uint64_t key = 0;
-    for (const V3f& corner : corners(scene, patch)) {
-        const V3f x = corner + V3f(0);  // replaces -0 by 0
+    for (int i = 0; i < patch.vertex_count(); ++i) {
+        const V3f x = scene.vertices[patch.vertices[static_cast<std::size_t>(i)]] + V3f(0);  // replaces -0 by 0
         const auto bits = [](float f) { return std::uint64_t{std::bit_cast<std::uint32_t>(f)}; };
         key += mix(bits(x.x) << 32 | bits(x.y), bits(x.z));
     }

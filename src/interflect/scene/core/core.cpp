@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <vector>
+
+#include "interflect/base/threads/parallel.h"
 
 namespace interflect::detail {
 
@@ -13,15 +15,25 @@ using Imath::V3d;
 /// Maximum distances from the middle, in reaches: for an origin of 0, and for faces of the core.
 constexpr double near_in_reaches = 8, core_in_reaches = 64;
 
-double weighted_median(std::span<const double> values, std::span<const double> weights) {
-    std::vector<std::size_t> order(values.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
-    const double half = 0.5 * std::accumulate(weights.begin(), weights.end(), 0.0);
+/// Returns the median of value(face), weighted by size.
+template <class Value>
+double weighted_median(std::span<const FaceExtent> faces, const Value& value) {
+    struct Weighted {
+        double value, weight;
+    };
+    std::vector<Weighted> order;
+    order.reserve(faces.size());
+    double sum = 0;
+    for (const FaceExtent& face : faces) {
+        order.push_back({value(face), face.size});
+        sum += face.size;
+    }
+    std::sort(order.begin(), order.end(), [](const Weighted& a, const Weighted& b) { return a.value < b.value; });
+    const double half = 0.5 * sum;
     double below = 0;
-    for (const std::size_t i : order)
-        if ((below += weights[i]) >= half) return values[i];
-    return values[order.back()];
+    for (const Weighted& w : order)
+        if ((below += w.weight) >= half) return w.value;
+    return order.back().value;
 }
 
 Imath::Box3f box_of(const Scene& scene, const Patch& patch) {
@@ -46,17 +58,13 @@ void FaceSample::add(const FaceExtent& face) {
 Core core_of(std::span<const FaceExtent> faces) {
     Core core;
     if (faces.empty()) return core;
-    std::vector<double> weights, values(faces.size());
-    weights.reserve(faces.size());
-    for (const FaceExtent& face : faces) weights.push_back(face.size);
-    for (int axis = 0; axis < 3; ++axis) {
-        std::transform(faces.begin(), faces.end(), values.begin(),
-                       [axis](const FaceExtent& face) { return face.centre[axis]; });
-        core.middle[axis] = weighted_median(values, weights);
-    }
-    std::transform(faces.begin(), faces.end(), values.begin(),
-                   [&](const FaceExtent& face) { return (face.centre - core.middle).length() + 0.5 * face.size; });
-    core.reach = weighted_median(values, weights);
+    constexpr std::size_t axes = 3;
+    parallel_for_ranges(axes, 1, [&](std::size_t i, std::size_t) {
+        const auto axis = static_cast<int>(i);
+        core.middle[axis] = weighted_median(faces, [axis](const FaceExtent& face) { return face.centre[axis]; });
+    });
+    core.reach = weighted_median(
+        faces, [&](const FaceExtent& face) { return (face.centre - core.middle).length() + 0.5 * face.size; });
     return core;
 }
 
@@ -78,11 +86,18 @@ Imath::Box3f core_bounds(const Scene& scene) {
         sample.add({centre_of(box), static_cast<double>(box.size().length())});
     }
     const Core core = core_of(sample.faces());
+    constexpr std::size_t patches_per_task = 4096;
+    std::vector<Imath::Box3f> parts((scene.patches.size() + patches_per_task - 1) / patches_per_task);
+    parallel_for_ranges(scene.patches.size(), patches_per_task, [&](std::size_t begin, std::size_t end) {
+        Imath::Box3f part;
+        for (const Patch& patch : std::span(scene.patches).subspan(begin, end - begin)) {
+            const Imath::Box3f box = box_of(scene, patch);
+            if ((centre_of(box) - core.middle).length() <= core_in_reaches * core.reach) part.extendBy(box);
+        }
+        parts[begin / patches_per_task] = part;
+    });
     Imath::Box3f bounds;
-    for (const Patch& patch : scene.patches) {
-        const Imath::Box3f box = box_of(scene, patch);
-        if ((centre_of(box) - core.middle).length() <= core_in_reaches * core.reach) bounds.extendBy(box);
-    }
+    for (const Imath::Box3f& part : parts) bounds.extendBy(part);
     return bounds;
 }
 

@@ -21,7 +21,7 @@ class FaceSample {
     static constexpr std::size_t capacity = 1 << 13;
 
     /// Returns whether the next face belongs to the sample. Call once per face.
-    bool wants_next() { return offered_++ % stride_ == 0; }
+    bool wants_next() { return (offered_++ & (stride_ - 1)) == 0; }
     void add(const FaceExtent& face);
     std::span<const FaceExtent> faces() const { return faces_; }
 

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
+#include "interflect/base/threads/parallel.h"
 #include "interflect/scene/faces/patch_area.h"
 
 namespace interflect::detail {
@@ -23,8 +25,15 @@ void extend(Imath::Box3d& box, const Scene& scene, const Patch& patch) {
 }  // namespace
 
 double scene_width(const Scene& scene) {
+    constexpr std::size_t patches_per_task = 4096;
+    std::vector<Imath::Box3d> parts((scene.patches.size() + patches_per_task - 1) / patches_per_task);
+    parallel_for_ranges(scene.patches.size(), patches_per_task, [&](std::size_t begin, std::size_t end) {
+        Imath::Box3d part;
+        for (std::size_t i = begin; i < end; ++i) extend(part, scene, scene.patches[i]);
+        parts[begin / patches_per_task] = part;
+    });
     Imath::Box3d box;
-    for (const Patch& patch : scene.patches) extend(box, scene, patch);
+    for (const Imath::Box3d& part : parts) box.extendBy(part);
     return box.isEmpty() ? 0 : box.size().length();
 }
 
