@@ -8,6 +8,7 @@
 #include "interflect/audit/sampled_sources.h"
 #include "interflect/base/numbers/points.h"
 #include "interflect/base/numbers/random.h"
+#include "interflect/base/threads/parallel.h"
 #include "interflect/geometry/polygons/patch_geometry.h"
 #include "interflect/leaks.h"
 #include "interflect/luminaires/emission.h"
@@ -45,25 +46,19 @@ class OneWayTest {
     OneWayTest(const Scene& scene, const RayCaster& ray_caster)
         : scene_(scene), ray_caster_(ray_caster), materials_(scene, ray_caster) {}
 
-    /// Tests a ray. @param source  Patch at the start of the ray; `none` for luminaires.
-    void add(const Ray& ray, PatchIndex source, double power) {
-        Hit hit = trace(ray);
-        if (hit.patch == none) return;
-        received_ += power;
-        V3f place = ray.origin + hit.distance * ray.direction;
-        if (const std::uint32_t face = face_between(ray.origin, source, place, hit.patch); face != none) {
-            extra_.add(scene_.patches[face], power, spread(place, hit.patch));
-            return;
-        }
-        // Surfaces behind a one-sided face miss this light if they see the source through its back.
-        const std::uint32_t stopped_by = hit.patch;
-        while (scene_.patches[hit.patch].other_side == none) {
-            const Ray behind{place - ray_caster_.ray_offset(hit.patch) * normal(hit.patch), ray.direction};
-            hit = trace(behind);
-            if (hit.patch == none) return;
-            place = behind.origin + hit.distance * ray.direction;
-            if (face_between(ray.origin, source, place, hit.patch) != none) return;
-            missing_.add(scene_.patches[stopped_by], power, spread(place, hit.patch));
+    /// Tests rays of equal power. @param source  Returns the patch at the start of ray i; `none` for luminaires.
+    template <class Source>
+    void add(std::span<const Ray> rays, const Source& source, double power) {
+        std::vector<Outcome> outcomes(rays.size());
+        constexpr std::size_t rays_per_task = 256;
+        parallel_for_ranges(rays.size(), rays_per_task, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) outcomes[i] = test(rays[i], source(i));
+        });
+        for (const Outcome& outcome : outcomes) {
+            if (outcome.is_received) received_ += power;
+            for (const Crossing& crossing : outcome.crossings)
+                (crossing.is_extra ? extra_ : missing_)
+                    .add(scene_.patches[crossing.face], power, spread(crossing.place, crossing.patch));
         }
     }
     OneWayLight result() const {
@@ -75,6 +70,41 @@ class OneWayTest {
     }
 
   private:
+    /// One-sided face that hides a surface from a source, or a source from a surface.
+    struct Crossing {
+        std::uint32_t face;
+        bool is_extra;  // whether the surface receives light; otherwise it misses light
+        V3f place;      // on the surface
+        PatchIndex patch;
+    };
+    struct Outcome {
+        bool is_received = false;
+        std::vector<Crossing> crossings;
+    };
+
+    Outcome test(const Ray& ray, PatchIndex source) const {
+        Outcome outcome;
+        Hit hit = trace(ray);
+        if (hit.patch == none) return outcome;
+        outcome.is_received = true;
+        V3f place = ray.origin + hit.distance * ray.direction;
+        if (const std::uint32_t face = face_between(ray.origin, source, place, hit.patch); face != none) {
+            outcome.crossings.push_back({face, true, place, hit.patch});
+            return outcome;
+        }
+        // Surfaces behind a one-sided face miss this light if they see the source through its back.
+        const std::uint32_t stopped_by = hit.patch;
+        while (scene_.patches[hit.patch].other_side == none) {
+            const Ray behind{place - ray_caster_.ray_offset(hit.patch) * normal(hit.patch), ray.direction};
+            hit = trace(behind);
+            if (hit.patch == none) return outcome;
+            place = behind.origin + hit.distance * ray.direction;
+            if (face_between(ray.origin, source, place, hit.patch) != none) return outcome;
+            outcome.crossings.push_back({stopped_by, false, place, hit.patch});
+        }
+        return outcome;
+    }
+
     Hit trace(const Ray& ray) const {
         Hit hit;
         ray_caster_.trace({&ray, 1}, {&hit, 1});
@@ -125,9 +155,11 @@ void add_surfaces(const Scene& scene, const RayCaster& ray_caster, const Solutio
     PointBlock points;
     std::uint64_t sample = 0;
     const SampledSources from = sample_sources(scene, ray_caster, solution);
+    std::vector<Ray> rays;
     for (const ElementIndex leaf : from.leaves)
-        test.add(ray_from(leaf, *solution.forest, ray_caster, sample++, points), solution.forest->patch(leaf),
-                 from.power_of_each());
+        rays.push_back(ray_from(leaf, *solution.forest, ray_caster, sample++, points));
+    test.add(
+        rays, [&](std::size_t i) { return solution.forest->patch(from.leaves[i]); }, from.power_of_each());
 }
 
 /// Traces rays of each luminaire part. Their number is in proportion to its power, rounded up.
@@ -140,7 +172,8 @@ void add_luminaires(const Scene& scene, OneWayTest& test) {
         const double power = channel_sum(emission.power(part));
         rays.resize(static_cast<std::size_t>(std::ceil(audit_rays * (power / total))));
         emission.shoot(part, PointSet::random, audit_seed, 0, points, rays);
-        for (const Ray& ray : rays) test.add(ray, no_patch, power / static_cast<double>(rays.size()));
+        test.add(
+            rays, [](std::size_t) { return no_patch; }, power / static_cast<double>(rays.size()));
     }
 }
 
