@@ -38,8 +38,14 @@ class Materials {
         const Material& m = material(patch);
         return {m.reflectance, m.exitance, m.transmittance};
     }
+    /// Returns the reflectance of surface() without the other properties.
+    const Rgb& reflectance(PatchIndex patch, ElementIndex element) const {
+        if (!elements_.empty() && element != patch)
+            if (const MeanSurface* known = elements_.find(element)) return known->reflectance;
+        return material(patch).reflectance;
+    }
     float mean_reflectance(PatchIndex patch, ElementIndex element) const {
-        return channel_sum(surface(patch, element).reflectance) / 3;
+        return channel_sum(reflectance(patch, element)) / 3;
     }
     bool has_textures() const { return !elements_.empty(); }
     /// Computes the means of new elements. Until then, they have the mean of their patch.

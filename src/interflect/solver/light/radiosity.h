@@ -38,9 +38,9 @@ class Radiosity {
 
   private:
     Rgb unchecked(PatchIndex patch, ElementIndex e) const {
+        if (!emits_) return materials_->reflectance(patch, e) * irradiance_[e];
         const MeanSurface surface = materials_->surface(patch, e);
-        const Rgb reflected = surface.reflectance * irradiance_[e];
-        return emits_ ? surface.exitance + reflected : reflected;
+        return surface.exitance + surface.reflectance * irradiance_[e];
     }
 
     const Materials* materials_ = nullptr;
