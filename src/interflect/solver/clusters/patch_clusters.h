@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/ray_caster.h"
 
@@ -36,17 +37,15 @@ class PatchClusters {
     /// Returns the nodes. Parents precede their children, and the children of a node are adjacent.
     std::span<const Node> nodes() const { return nodes_; }
 
-    /// Returns the sum over the patches of each node.
+    /// Returns the sum over the patches of each node. Calls of_patch(patch) on all threads.
     template <class T, class OfPatch>
     std::vector<T> sums(const OfPatch& of_patch) const {
         std::vector<T> sums(nodes_.size(), T(0));
-        for (std::size_t i = nodes_.size(); i-- > 0;) {
-            const Node& node = nodes_[i];
-            if (node.is_patch())
-                sums[i] = T(of_patch(node.patch));
-            else
-                for (std::uint32_t k = 0; k < node.child_count; ++k) sums[i] += sums[node.first_child + k];
-        }
+        parallel_for_indices(nodes_.size(), [&](std::size_t i) {
+            if (nodes_[i].is_patch()) sums[i] = T(of_patch(nodes_[i].patch));
+        });
+        for (std::size_t i = nodes_.size(); i-- > 0;)
+            for (std::uint32_t k = 0; k < nodes_[i].child_count; ++k) sums[i] += sums[nodes_[i].first_child + k];
         return sums;
     }
 

@@ -88,11 +88,9 @@ void set_errors_of_clusters(const RunInputs& inputs, const LightState& light, Er
                             ElementErrors& errors) {
     const ElementForest& forest = *light.forest;
     const PatchClusters& clusters = inputs.clusters.front();
-    const std::vector<double> pixels =
-        clusters.sums<double>([&](PatchIndex p) { return forest.area(p) / pixel_area(inputs, light, p); });
     std::vector<ClusterShrinkage::Errors> of_patches(forest.patch_count());
     ClusterShrinkage(light, clusters, light.solution.irradiance).measure_errors(of_patches, [&](std::size_t node) {
-        return measure == ErrorMeasure::surfaces ? 1.0f : shown_of_cluster(pixels[node]);
+        return measure == ErrorMeasure::surfaces ? 1.0f : shown_of_cluster(inputs.cluster_pixels[node]);
     });
     for (std::size_t p = 0; p < of_patches.size(); ++p) {
         errors.noise[p] = of_patches[p].noise;
@@ -123,9 +121,10 @@ ElementErrors element_errors(const RunInputs& inputs, const LightState& light, E
     set_errors_of_patches(inputs, light, measure, errors);
     errors.noise_of_patch = errors.noise;
     forest.for_siblings_from_roots([&](ElementIndex first) {
+        const ElementIndex parent = forest.parent(first);
+        if (measure == ErrorMeasure::pictures && light.solution.view_importance[parent] == 0) return;
         const SiblingVariation variation = sibling_variation(light, first);
         const auto [noise, bias] = added_error(light, first, variation);
-        const ElementIndex parent = forest.parent(first);
         const float shown = shown_of_siblings(inputs, light, measure, first);
         const Shrinkage shrinkage = shrinkage_of(light, first, variation);
         for (ElementIndex e = first; e < first + 4; ++e) {

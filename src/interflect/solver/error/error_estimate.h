@@ -7,7 +7,8 @@
 
 namespace interflect::detail {
 
-/// Mean squared errors of the elements. The bias may be negative.
+/// Mean squared errors of the elements. The bias may be negative. With ErrorMeasure::pictures, elements below invisible
+/// parents have 0.
 struct ElementErrors {
     std::vector<float> noise, bias;
     std::vector<float> noise_of_patch;  // part of `noise`: variance of the mean of the element's patch

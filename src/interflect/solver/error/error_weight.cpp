@@ -13,7 +13,8 @@ ErrorMeasure default_measure(const LightState& light) {
 
 double error_weight(const RunInputs& inputs, const LightState& light, ErrorMeasure measure, ElementIndex element) {
     if (measure == ErrorMeasure::surfaces) return 1;
-    const Rgb rho = inputs.materials.surface(light.forest->patch(element), element).reflectance;
+    if (light.solution.view_importance[element] == 0) return 0;
+    const Rgb rho = inputs.materials.reflectance(light.forest->patch(element), element);
     Rgb h = light.solution.irradiance[element];
     for (int c = 0; c < 3; ++c) h[c] = std::max(0.0f, h[c]);  // noisy differences may sum to a negative value
     const float all = luminance(h), reflected = luminance(Rgb(rho * h));
@@ -31,11 +32,12 @@ double error_reference(const RunInputs& inputs, const LightState& light, ErrorMe
     const Sums sums = parallel_sum(forest.size(), elements_per_task, Sums(), [&](std::size_t begin, std::size_t end) {
         Sums sum;
         for (ElementIndex e(begin); e < end; ++e) {
+            if (of_pictures && light.solution.view_importance[e] == 0) continue;
             if (!forest.is_leaf(e)) continue;
             const double w =
                 forest.area(e) * (of_pictures ? static_cast<double>(light.solution.view_importance[e]) : 1.0);
             const Rgb& h = light.solution.irradiance[e];
-            const Rgb& rho = inputs.materials.surface(forest.patch(e), e).reflectance;
+            const Rgb& rho = inputs.materials.reflectance(forest.patch(e), e);
             sum.light += w * luminance(of_pictures ? Rgb(rho * h) : h);
             sum.weight += w;
         }

@@ -41,10 +41,11 @@ RiskCheck check_risk(const SolverState& state, const Estimate& fresh) {
     const std::uint32_t roots = forest.patch_count();
     const ErrorMeasure measure = default_measure(state.light);
     const auto check_siblings = [&](ElementIndex first, RiskCheck& sum) {
-        const SiblingVariation variation = sibling_variation(state.light, first);
         const ElementIndex parent = forest.parent(first);
         const double w = error_weight(state.inputs, state.light, measure, parent) * forest.area(parent);
-        if (!variation.is_known() || !(w > 0)) return;
+        if (!(w > 0)) return;
+        const SiblingVariation variation = sibling_variation(state.light, first);
+        if (!variation.is_known()) return;
 
         // Compare the squared errors of the four siblings
         const double signal = measured_signal(state.light, fresh, first), k = variation.shrinkage();

@@ -60,10 +60,11 @@ void NoiseModel::add(const ElementForest& forest, const Estimate& fresh, std::sp
             for (ElementIndex e(begin); e < end; ++e) {
                 const float m = history[e];
                 if (!(m > 0)) continue;
+                const double w = weight(e);
+                if (w == 0) continue;
                 float difference = luminance(fresh.irradiance[e]) - luminance(mean[e]);
                 if (const ElementIndex parent = forest.parent(e); parent != none)
                     difference -= luminance(fresh.irradiance[parent]) - luminance(mean[parent]);
-                const double w = weight(e);
                 const std::size_t n = hit_rate_class(forest, mean, e);
                 const float shared = fresh.shared_variance.empty() ? 0 : m * fresh.shared_variance[e],
                             independent = (rays * std::max(0.0f, per_ray_[e] - shared) + m * rays * fresh.variance[e]) /

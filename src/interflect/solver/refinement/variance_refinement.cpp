@@ -59,49 +59,79 @@ class VarianceOracle {
         return std::isfinite(error) ? negligible_gain * error * error * weighted_mean_square() : 0;
     }
 
-    bool splits(ElementIndex leaf, double min_gain) const {
-        const auto [signal, noise] = expected_children(leaf);
+    /// Expected mean squared differences of the children from a leaf.
+    struct Expected {
+        float signal, noise;
+    };
+    /// Calls body(leaf, expected) for each leaf on all threads. `expected()` returns Expected, which is computed at
+    /// most once for four siblings.
+    template <class Body>
+    void for_each_leaf(const Body& body) const {
+        const std::uint32_t roots = forest_.patch_count();
+        parallel_for_ranges(roots, elements_per_task, [&](std::size_t begin, std::size_t end) {
+            for (PatchIndex e(begin); e < end; ++e)
+                if (forest_.is_leaf(e)) body(e, [&] { return expected_in_patch(e); });
+        });
+        parallel_for_ranges((forest_.size() - roots) / 4, elements_per_task / 4,
+                            [&](std::size_t begin, std::size_t end) {
+                                for (std::size_t block = begin; block < end; ++block)
+                                    for_each_leaf_of_siblings(ElementIndex(roots + 4 * block), body);
+                            });
+    }
+
+    template <class GetExpected>
+    bool splits(ElementIndex leaf, const GetExpected& expected, double min_gain) const {
+        if (!psi_.empty() && psi_[leaf] == 0 && state_.light.solution.view_importance[leaf] == 0) return false;
+        const auto [signal, noise] = expected();
         if (!(signal > min_signal * noise)) return false;
-        const bool blurs =
-            forest_.area(leaf) >= 4 * min_area(state_.inputs, state_.light, leaf) &&
-            (visible_ ? signal > visible_->threshold(leaf) : weight(leaf) * static_cast<double>(signal) > min_gain);
+        const bool is_relevant =
+            visible_ ? signal > visible_->threshold(leaf) : weight(leaf) * static_cast<double>(signal) > min_gain;
+        const bool blurs = is_relevant && forest_.area(leaf) >= 4 * min_area(state_.inputs, state_.light, leaf);
         const bool misplaces = misplaced_power(leaf, signal) > min_misplaced_power_ &&
                                forest_.area(leaf) >= 4 * state_.inputs.element_floor.default_min_area();
         return blurs || misplaces;
     }
 
     /// Returns whether a leaf may reflect a significant amount of light from wrong places; true if this is unknown.
-    bool may_misplace(ElementIndex leaf) const {
+    template <class GetExpected>
+    bool may_misplace(ElementIndex leaf, const GetExpected& expected) const {
         if (state_.light.history[leaf] == 0 || !state_.light.noise.is_known()) return true;
-        return misplaced_power(leaf, std::max(0.0f, expected_children(leaf).signal)) > max_misplaced_power_;
+        if (!psi_.empty() && psi_[leaf] == 0) return false;
+        return misplaced_power(leaf, std::max(0.0f, expected().signal)) > max_misplaced_power_;
     }
 
   private:
-    /// Expected mean squared differences of the children from the leaf.
-    struct Expected {
-        float signal, noise;
-    };
-    /// Children have four times the variance of their parent, of which 3/4 remain in the differences from it.
-    Expected expected_children(ElementIndex leaf) const {
-        if (leaf < forest_.patch_count()) {
-            const float h = luminance(state_.light.solution.irradiance[leaf]);
-            return {assumed_square * h * h, 3 * state_.light.noise.variance(forest_, state_.light.solution.irradiance,
-                                                                            leaf, state_.light.history[leaf])};
-        }
-        const SiblingVariation variation = sibling_variation(state_.light, forest_.first_child(forest_.parent(leaf)));
+    // Children have four times the variance of their parent, of which 3/4 remain in the differences from it.
+    Expected expected_in_patch(PatchIndex patch) const {
+        const float h = luminance(state_.light.solution.irradiance[patch]);
+        return {assumed_square * h * h, 3 * state_.light.noise.variance(forest_, state_.light.solution.irradiance,
+                                                                        patch, state_.light.history[patch])};
+    }
+    Expected expected_below_siblings(ElementIndex first) const {
+        const SiblingVariation variation = sibling_variation(state_.light, first);
         return {expected_decay * variation.signal(), 4 * variation.noise};
+    }
+    template <class Body>
+    void for_each_leaf_of_siblings(ElementIndex first, const Body& body) const {
+        std::optional<Expected> known;
+        const auto expected = [&] {
+            if (!known) known = expected_below_siblings(first);
+            return *known;
+        };
+        for (ElementIndex e = first; e < first + 4; ++e)
+            if (forest_.is_leaf(e)) body(e, expected);
     }
     double weight(ElementIndex leaf) const {
         double w = error_weight(state_.inputs, state_.light, measure_, leaf);
         if (!psi_.empty()) {
-            const double rho = luminance(state_.inputs.materials.surface(forest_.patch(leaf), leaf).reflectance);
+            const double rho = luminance(state_.inputs.materials.reflectance(forest_.patch(leaf), leaf));
             w += invisible_error_weight * rho * rho * static_cast<double>(psi_[leaf]);
         }
         return w * forest_.area(leaf);
     }
     /// Returns the power that the leaf reflects from wrong places [lm or W, times importance].
     double misplaced_power(ElementIndex leaf, float signal) const {
-        const double rho = luminance(state_.inputs.materials.surface(forest_.patch(leaf), leaf).reflectance);
+        const double rho = luminance(state_.inputs.materials.reflectance(forest_.patch(leaf), leaf));
         return rho * std::sqrt(static_cast<double>(signal)) * forest_.area(leaf) * (psi_.empty() ? 1.0 : psi_[leaf]);
     }
     double weighted_mean_square() const {
@@ -135,9 +165,7 @@ std::vector<std::uint8_t> leaves_reflecting_where_received(const SolverState& st
     if (!refines_by_variance(state.light.options())) return {};
     const VarianceOracle oracle(state);
     std::vector<std::uint8_t> marks(state.light.forest->size(), 0);
-    parallel_for_ranges(marks.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (ElementIndex e(begin); e < end; ++e) marks[e] = state.light.forest->is_leaf(e) && oracle.may_misplace(e);
-    });
+    oracle.for_each_leaf([&](ElementIndex e, const auto& expected) { marks[e] = oracle.may_misplace(e, expected); });
     return marks;
 }
 
@@ -146,9 +174,8 @@ void refine_by_variance(SolverState& state) {
     const VarianceOracle oracle(state);
     const double min_gain = oracle.min_gain();
     std::vector<std::uint8_t> splits(forest.size(), 0);
-    parallel_for_ranges(splits.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (ElementIndex e(begin); e < end; ++e)
-            splits[e] = forest.is_leaf(e) && state.light.history[e] > 0 && oracle.splits(e, min_gain);
+    oracle.for_each_leaf([&](ElementIndex e, const auto& expected) {
+        splits[e] = state.light.history[e] > 0 && oracle.splits(e, expected, min_gain);
     });
     divide_leaves(state, splits);
 }

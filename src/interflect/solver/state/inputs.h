@@ -32,6 +32,8 @@ struct RunInputs {
     Emission emission;
     ElementFloor element_floor;           // minimum size of elements for the current views
     std::vector<PatchClusters> clusters;  // empty if differences between patches are not shrunk
+    /// Number of pixels that each node of the first tree of clusters covers in the current views; empty without either.
+    std::vector<double> cluster_pixels;
 };
 
 }  // namespace interflect::detail

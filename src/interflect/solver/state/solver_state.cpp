@@ -14,6 +14,13 @@ void trace_view_rays(const RunInputs& inputs, const ElementForest& forest, ViewI
     view.trace_view_rays(forest, inputs.ray_caster, Panes(inputs.scene, inputs.ray_caster), rays_per_view);
 }
 
+void set_cluster_pixels(RunInputs& inputs, const LightState& light) {
+    inputs.cluster_pixels.clear();
+    if (inputs.clusters.empty() || light.options().views.empty()) return;
+    inputs.cluster_pixels = inputs.clusters.front().sums<double>(
+        [&](PatchIndex p) { return light.forest->area(p) / pixel_area(inputs, light, p); });
+}
+
 }  // namespace
 
 RunInputs::RunInputs(const Scene& s, const RayCaster& caster, const SolveOptions& options)
@@ -37,6 +44,7 @@ SolverState::SolverState(const Scene& scene, const RayCaster& caster, const Solv
     compute_view_importance(*this);
     if (options.experimental.shrinkage && options.experimental.clusters && refines_by_variance(options))
         inputs.clusters = cluster_patches(*light.forest, caster);
+    set_cluster_pixels(inputs, light);
 }
 
 void set_targets(RunInputs& inputs, SamplingState& sampling, std::vector<Imath::Box3f> targets) {
@@ -63,6 +71,7 @@ void compute_view_importance(SolverState& state) {
         set_targets(inputs, sampling, {});
     sampling.view = ViewImportance(light.options().views, light.options().seed);
     inputs.element_floor = ElementFloor(inputs.scene, light.options());
+    set_cluster_pixels(inputs, light);
     trace_view_rays(inputs, *light.forest, sampling.view, light.options().importance.camera_rays);
     solution.view_importance.clear();
     solution.indirect_importance.clear();
