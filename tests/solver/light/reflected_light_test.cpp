@@ -113,6 +113,8 @@ TEST(UpLights, AreResolvedOnHiddenSurfacesWhereNoImportanceIsFollowed) {
     EXPECT_GT(hidden_leaves("ihsrr", ImportanceUse::direct, true), 0.25 * without_view);
 }
 
+constexpr std::uint32_t leaf_end = 15;  // of random_points()
+
 std::vector<StartPoint> random_points(std::uint64_t seed) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<float> uniform(0, 1);
@@ -124,9 +126,9 @@ std::vector<StartPoint> random_points(std::uint64_t seed) {
 
 TEST(StartPoints, AreTheSameInAnyOrder) {
     std::vector<StartPoint> points = random_points(1);
-    const StartPoints a(points);
+    const StartPoints a(points, leaf_end);
     std::shuffle(points.begin(), points.end(), std::mt19937_64(2));
-    const StartPoints b(points);
+    const StartPoints b(points, leaf_end);
     ASSERT_EQ(a.all().size(), b.all().size());
     for (std::size_t i = 0; i < a.all().size(); ++i) {
         EXPECT_EQ(a.all()[i].leaf, b.all()[i].leaf);
@@ -139,7 +141,7 @@ TEST(StartPoints, AreTheSameInAnyOrder) {
 
 TEST(StartPoints, AreChosenInProportionToTheirPower) {
     const std::vector<StartPoint> points = random_points(3);
-    const StartPoints sorted(points);
+    const StartPoints sorted(points, leaf_end);
     double power = 0, moment = 0;  // over the points of leaf 14
     for (const StartPoint& p : points) {
         if (p.leaf != 14) continue;

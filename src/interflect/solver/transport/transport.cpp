@@ -230,16 +230,20 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
 
     // Combine the results of threads and ranks
     Escaped escaped;
-    std::vector<StartPoint> start_points;
+    std::vector<const std::vector<StartPoint>*> start_points;
     for (ThreadBuffers& buffers : all_buffers) {
         escaped += buffers.descent.finish();
-        const std::vector<StartPoint>& some = buffers.descent.start_points();
-        start_points.insert(start_points.end(), some.begin(), some.end());
+        start_points.push_back(&buffers.descent.start_points());
     }
+    std::vector<StartPoint> start_points_of_ranks;
     if (stop.ranks()) {
         make_elements_of_ranks(*stop.ranks(), forest, old_size);
         if (found_importance) add_over_ranks(*stop.ranks(), found_importance->size(), *found_importance);
-        start_points = gather_over_ranks<StartPoint>(*stop.ranks(), start_points);
+        std::vector<StartPoint> own;
+        for (const std::vector<StartPoint>* of_thread : start_points)
+            own.insert(own.end(), of_thread->begin(), of_thread->end());
+        start_points_of_ranks = gather_over_ranks<StartPoint>(*stop.ranks(), own);
+        start_points = {&start_points_of_ranks};
         escaped = sum_over_ranks(*stop.ranks(), escaped);
     }
 
@@ -248,7 +252,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     advance(streams, allocation, old_size, step.part_count());
     Received received = collect(step, forest, old_size, allocation, data.payload_totals, data.contribution_units,
                                 found_importance ? &*found_importance : nullptr, sums, stop.ranks());
-    received.start_points = StartPoints(std::move(start_points));
+    received.start_points = StartPoints(start_points, old_size);
     received.escaped_rays = escaped.rays;
     received.escaped_power = data.contribution_units.power.to_colour(escaped.power);
     // Skies and suns send rays through the box of the scene and through the boxes of targets within it (Emission). Each
