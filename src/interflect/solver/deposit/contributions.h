@@ -50,6 +50,10 @@ class ContributionSums {
         sums_[element] = {};
         for (std::size_t i = 0; i < group_terms_; ++i) group_sums_[element * group_terms_ + i] = 0;
     }
+    bool is_zero(std::size_t element) const {
+        const Contribution& sum = sums_[element];  // the comparison of arrays would call memcmp()
+        return (sum[0] | sum[1] | sum[2] | sum[3] | sum[4]) == 0;
+    }
     Contribution take(std::size_t element) { return std::exchange(sums_[element], {}); }
     std::array<std::int64_t, 3> take(std::size_t element, std::size_t group) {
         std::array<std::int64_t, 3> power{};

@@ -16,6 +16,7 @@ class RenumberedSums {
     RenumberedSums(ContributionSums& sums, std::uint32_t old_size, std::vector<ElementIndex> old_numbers)
         : sums_(sums), old_size_(old_size), old_numbers_(std::move(old_numbers)) {}
 
+    bool is_zero(ElementIndex e) const { return sums_.is_zero(number(e)); }
     Contribution take(ElementIndex e) { return sums_.take(number(e)); }
     std::array<std::int64_t, 3> take(ElementIndex e, std::size_t group) { return sums_.take(number(e), group); }
     std::size_t terms() const { return sums_.terms(); }
@@ -88,6 +89,13 @@ void convert(const ElementForest& forest, const TransportStep& step, const Contr
     received.groups.assign(step.groups.size(), std::vector<Rgb>(forest.size()));
     parallel_for_ranges(forest.size(), at_once, [&](std::size_t begin, std::size_t end) {
         for (ElementIndex e(begin); e < end; ++e) {
+            if (received.groups.empty() && sums.is_zero(e)) {  // avoids writing the sums
+                if (step.carries_power()) {
+                    received.irradiance[e] = Rgb(0);
+                    received.variance[e] = 0;
+                }
+                continue;
+            }
             const auto [red, green, blue, square, importance] = sums.take(e);
             const float area = forest.area(e);
             if (step.carries_power()) {
