@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/error/error_estimate.h"
 #include "interflect/solver/shrinkage/cluster_shrinkage.h"
@@ -44,11 +45,13 @@ void reduce_patches(const SolverState& state, std::span<const Rgb> unreduced, st
     const ElementForest& forest = *state.light.forest;
     std::vector<Rgb> means(forest.patch_count(), Rgb(0));
     const float weight = 1 / static_cast<float>(state.inputs.clusters.size());
-    for (const PatchClusters& clusters : state.inputs.clusters) {
-        const std::vector<Rgb> of_tree =
-            ClusterShrinkage(state.light, clusters, unreduced).means(state.sampling.view.rays());
+    std::vector<std::vector<Rgb>> of_trees(state.inputs.clusters.size());
+    parallel_for_ranges(of_trees.size(), 1, [&](std::size_t tree, std::size_t) {
+        of_trees[tree] =
+            ClusterShrinkage(state.light, state.inputs.clusters[tree], unreduced).means(state.sampling.view.rays());
+    });
+    for (const std::vector<Rgb>& of_tree : of_trees)
         for (std::size_t p = 0; p < means.size(); ++p) means[p] += weight * of_tree[p];
-    }
     for (std::uint32_t i = forest.size(); i-- > 0;) {  // patches last, because their elements need the old means
         const ElementIndex e(i);
         const PatchIndex patch = forest.patch(e);
@@ -81,12 +84,17 @@ void finish_solution(SolverState& state) {
     const ElementErrors errors = element_errors(state.inputs, state.light, ErrorMeasure::surfaces);
     solution.standard_error.resize(forest.size());
     solution.discretisation_error.resize(forest.size());
-    for (ElementIndex e{0}; e < forest.size(); ++e) {
+    const auto set_errors = [&](ElementIndex begin, std::uint32_t count, float signal) {
         // Finer levels add 1/4 + 1/16 + ... = 1/3 of the signal.
-        const float within = std::max(0.0f, signal_among_siblings(state.light, e)) / 3;
-        solution.standard_error[e] = std::sqrt(errors.noise[e]);
-        solution.discretisation_error[e] = std::sqrt(std::max(0.0f, errors.bias[e]) + within);
-    }
+        const float within = std::max(0.0f, signal) / 3;
+        for (ElementIndex e = begin; e < begin + count; ++e) {
+            solution.standard_error[e] = std::sqrt(errors.noise[e]);
+            solution.discretisation_error[e] = std::sqrt(std::max(0.0f, errors.bias[e]) + within);
+        }
+    };
+    set_errors(ElementIndex(0), forest.patch_count(), 0);
+    forest.for_siblings_from_roots(
+        [&](ElementIndex first) { set_errors(first, 4, signal_among_siblings(state.light, first)); });
     state.sampling.streams.used.resize(forest.size(), 0);
     solution.rays.assign(state.sampling.streams.used.begin(), state.sampling.streams.used.end());
 

@@ -106,9 +106,12 @@ ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhood
         smoothed_importance(forest, psi, o.importance.smoothing, o.importance.exponent), {}, {}, {}};
     weigh_parts(emission, found, static_cast<float>(o.importance.exponent), weights);
     if (neighbourhoods.empty() || o.importance.smoothing == 0) return weights;
-    for (PatchIndex i{0}; i < forest.patch_count(); ++i) weights.nearby.push_back(psi[i]);
+    weights.nearby.resize(forest.patch_count());
+    for (PatchIndex i{0}; i < forest.patch_count(); ++i) weights.nearby[i] = psi[i];
     neighbourhoods.smooth(forest, weights.nearby, taken_over);
-    for (float& x : weights.nearby) x = std::pow(x, static_cast<float>(o.importance.exponent));
+    parallel_for_indices(weights.nearby.size(), [&](std::size_t i) {
+        weights.nearby[i] = std::pow(weights.nearby[i], static_cast<float>(o.importance.exponent));
+    });
     return weights;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "interflect/base/threads/parallel.h"
 #include "interflect/elements/forest.h"
 
 namespace interflect::detail {
@@ -15,6 +16,8 @@ using Patches = std::span<PatchIndex>;
 
 std::size_t half(std::size_t count) { return count / 2; }
 
+constexpr std::size_t patches_per_task = 1 << 12;
+
 void arrange(Patches patches, const std::vector<V3f>& centres) {
     if (patches.size() < 2) return;
     Imath::Box3f box;
@@ -24,8 +27,11 @@ void arrange(Patches patches, const std::vector<V3f>& centres) {
     std::nth_element(patches.begin(), middle, patches.end(), [&](PatchIndex a, PatchIndex b) {
         return centres[a][axis] != centres[b][axis] ? centres[a][axis] < centres[b][axis] : a < b;
     });
-    arrange(patches.first(half(patches.size())), centres);
-    arrange(patches.subspan(half(patches.size())), centres);
+    const auto arrange_first = [&] { arrange(patches.first(half(patches.size())), centres); };
+    const auto arrange_second = [&] { arrange(patches.subspan(half(patches.size())), centres); };
+    if (patches.size() >= patches_per_task) return parallel_invoke(arrange_first, arrange_second);
+    arrange_first();
+    arrange_second();
 }
 
 }  // namespace

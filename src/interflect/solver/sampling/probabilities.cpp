@@ -1,6 +1,8 @@
 #include "interflect/solver/sampling/probabilities.h"
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
@@ -27,13 +29,15 @@ struct WeightSums {
 };
 
 /// Computes the sums of the weights of leaves.
-/// @param powers       Zeros; receives the power of each leaf.
-/// @param importances  Zeros; receives the importance of each leaf. Empty if no rays are sampled by importance.
+/// @param powers       Receives the power of each leaf, and 0 for inner elements.
+/// @param importances  Receives the same for importance. Empty if no rays are sampled by importance.
 WeightSums weigh_leaves(const SamplingWeights& s, const MixtureWeights& shares, std::span<double> powers,
                         std::span<double> importances) {
     const bool by_power = shares.power > 0 || shares.weighted_power > 0 || shares.power_nearby > 0;
     return parallel_sum(s.forest.size(), elements_per_task, WeightSums(), [&](std::size_t begin, std::size_t end) {
         WeightSums sums;
+        std::ranges::fill(powers.subspan(begin, end - begin), 0.0);
+        if (!importances.empty()) std::ranges::fill(importances.subspan(begin, end - begin), 0.0);
         for (ElementIndex e(begin); e < end; ++e) {
             if (importances.empty() && !s.light.may_shine(e)) continue;
             if (!s.forest.is_leaf(e)) continue;
@@ -68,7 +72,11 @@ void weigh_parts(const SamplingWeights& s, const MixtureWeights& shares, WeightS
 
 Mixture mixture(const SamplingWeights& sampled, const MixtureWeights& shares) {
     const ElementForest& forest = sampled.forest;
-    std::vector<double> powers(forest.size()), importances(shares.importance > 0 ? forest.size() : 0);
+    // The threads of weigh_leaves() clear the memory
+    const std::size_t importance_count = shares.importance > 0 ? forest.size() : 0;
+    const auto memory = std::make_unique_for_overwrite<double[]>(forest.size() + importance_count);
+    const std::span<double> powers(memory.get(), forest.size());
+    const std::span<double> importances(memory.get() + forest.size(), importance_count);
     WeightSums sums = weigh_leaves(sampled, shares, powers, importances);
     weigh_parts(sampled, shares, sums);
     const auto factor = [](double share, double of) { return of > 0 ? share / of : 0; };

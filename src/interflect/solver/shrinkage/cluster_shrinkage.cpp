@@ -259,12 +259,15 @@ void ClusterShrinkage::keep_means_of_pictures(std::int64_t camera_rays, std::vec
     const double fewest = fewest_camera_rays / static_cast<double>(camera_rays);
 
     // Assign each patch to the smallest cluster that enough camera rays hit
-    std::vector<Region> regions(nodes.size());
+    std::vector<Region> regions(1);  // the first consists of patches that no such cluster contains
     std::vector<std::uint32_t> region(nodes.size(), 0), region_of_patch(means.size());
     std::vector<float> uncertainty(means.size());
     for (std::uint32_t i = 0; i < nodes.size(); ++i) {
         const auto [first, count, patch] = nodes[i];
-        if (shares[i] >= fewest) region[i] = i;
+        if (i > 0 && shares[i] >= fewest) {
+            region[i] = static_cast<std::uint32_t>(regions.size());
+            regions.emplace_back();
+        }
         if (patch == none) {
             std::fill_n(region.begin() + first, count, region[i]);
             continue;
