@@ -54,6 +54,16 @@ constexpr WordsOfByte words_of_byte(std::size_t shift) {
 
 constexpr std::array<WordsOfByte, 2> words_of_bytes{words_of_byte(0), words_of_byte(8)};
 
+/// Returns the four bit-reversed Sobol' words of an index in natural order.
+std::array<std::uint32_t, 4> sobol_words(std::uint32_t index) {
+    std::array<std::uint32_t, 4> words{};
+    for (std::size_t d = 0; d < 4; ++d)
+        words[d] = words_of_bytes[0][index & 0xff][d] ^ words_of_bytes[1][index >> 8 & 0xff][d];
+    for (std::uint32_t bits = index & ~0xffffu; bits != 0; bits &= bits - 1)
+        for (std::size_t d = 0; d < 4; ++d) words[d] ^= directions[d][static_cast<std::size_t>(std::countr_zero(bits))];
+    return words;
+}
+
 /// Owen scrambling of bit-reversed numbers: each bit depends only on itself and lower bits. Form of Laine and Karras
 /// 2011, constants of N. Vegdahl 2021.
 constexpr std::uint32_t nested_permutation(std::uint32_t x, std::uint32_t seed) {
@@ -77,11 +87,9 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
 /// are the same sets as in natural order.
 void fill_sobol(std::uint64_t key, std::uint32_t first, std::size_t begin, std::size_t count, PointBlock& block) {
     std::array<std::uint32_t, PointBlock::capacity> word;
+    const std::array<std::uint32_t, 4> first_word = sobol_words(first ^ (first >> 1));
     for (std::size_t d = 0; d < 4; ++d) {
-        std::uint32_t state = 0;
-        for (std::uint32_t gray = first ^ (first >> 1); gray != 0; gray &= gray - 1)
-            state ^= directions[d][static_cast<std::size_t>(std::countr_zero(gray))];
-        word[0] = state;
+        word[0] = first_word[d];
         for (std::size_t i = 1; i < count; ++i)
             word[i] = word[i - 1] ^
                       directions[d][static_cast<std::size_t>(std::countr_zero(first + static_cast<std::uint32_t>(i)))];
@@ -118,11 +126,7 @@ std::array<float, 4> shuffled_point(std::uint64_t key, std::uint32_t index) {
     const std::uint32_t shuffled =
         (reverse_bits(nested_permutation(reverse_bits(index), shuffle_seed)) & shuffled_bits) |
         (index & ~shuffled_bits);
-    std::array<std::uint32_t, 4> words{};
-    for (std::size_t d = 0; d < 4; ++d)
-        words[d] = words_of_bytes[0][shuffled & 0xff][d] ^ words_of_bytes[1][shuffled >> 8 & 0xff][d];
-    for (std::uint32_t bits = shuffled & ~shuffled_bits; bits != 0; bits &= bits - 1)
-        for (std::size_t d = 0; d < 4; ++d) words[d] ^= directions[d][static_cast<std::size_t>(std::countr_zero(bits))];
+    const std::array<std::uint32_t, 4> words = sobol_words(shuffled);
     std::array<float, 4> point;
     for (std::size_t d = 0; d < 4; ++d) {
         const auto seed = static_cast<std::uint32_t>(mix(key, d) >> 32);
