@@ -6,6 +6,7 @@
 #include "interflect/solution.h"
 #include "interflect/solve.h"
 #include "interflect/solver.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes/scenes.h"
 #include "tests/support/scenes/skies.h"
 
@@ -64,6 +65,7 @@ TEST(SkiesInASolution, ComeBack) {
 }
 
 TEST(SkiesInARun, GoOnWithTheSameBits) {
+    RELEASE_ONLY();  // see SkiesInASolution.ComeBack and SavedTargets.OfTheSkyAreRestored
     const TemporaryFolder folder;
     const auto path = folder.path() / "run.h5";
     Solver whole(outdoors(), few_rays());

@@ -12,6 +12,7 @@
 #include "interflect/export.h"
 #include "tests/exports/lightmap/lightmaps.h"
 #include "tests/support/parameter_names.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes/scenes.h"
 
 namespace interflect {
@@ -99,6 +100,7 @@ TEST_P(VertexLightOfAFloor, IsInterpolatedAsWellAsAsked) {
 
 TEST_P(VertexLightOfAFloor, RespectsTheLimitOfTriangles) {
     for (const int limit : {200, 2000, 20'000}) {
+        RELEASE_ONLY_IF(limit > 2000);
         interpolation_error({.max_error = 1e-4f, .min_edge = 1e-4f, .max_triangles = limit});
         EXPECT_LT(static_cast<double>(triangles), 1.1 * limit);
         EXPECT_GT(static_cast<double>(triangles), 0.5 * limit);  // fans are fewer than in furnished rooms
@@ -162,8 +164,9 @@ TEST(VertexLight, IsEvenInAFurnace) {
         ExportOptions options;
         options.bake.shading = shading;
         options.vertices.max_edge = 0.5f;
+        const std::uint64_t seeds = is_sanitized ? 1 : 8;
         std::vector<double> means;
-        for (options.bake.seed = 1; options.bake.seed <= 8; ++options.bake.seed) {
+        for (options.bake.seed = 1; options.bake.seed <= seeds; ++options.bake.seed) {
             VertexLight light = make_vertex_light(scene, solution, options);
             double sum = 0, squares = 0, count = 0;
             for (const MeshTriangle& triangle : triangles_of(light))
@@ -177,7 +180,9 @@ TEST(VertexLight, IsEvenInAFurnace) {
             EXPECT_LT(std::sqrt(squares / count), 0.05) << static_cast<int>(shading);  // most in the corners
             means.push_back(sum / count);
         }
-        EXPECT_NEAR(std::accumulate(means.begin(), means.end(), 0.0) / 8, 0, 2e-3) << static_cast<int>(shading);
+        if (is_sanitized) continue;
+        EXPECT_NEAR(std::accumulate(means.begin(), means.end(), 0.0) / static_cast<double>(seeds), 0, 2e-3)
+            << static_cast<int>(shading);
     }
 }
 

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/support/release_only.h"
+
 namespace interflect {
 
 using namespace detail;
@@ -68,6 +70,7 @@ TEST(SolveReport, RefusesOptionsOutOfRange) {
 TEST(JsonText, RefusesDeepNestingAndObjectsOfManyMembers) {
     EXPECT_THROW(parse_json_text(std::string(1'000'000, '[')), std::exception);
     EXPECT_THROW(parse_json_text(std::string(500, '[') + std::string(500, ']')), std::runtime_error);
+    RELEASE_ONLY();  // many members; see JsonText.KeepsNamesOfAnyBytes
     std::string object = "{";
     for (int i = 0; i < 300'000; ++i) object += "\"" + std::to_string(i) + "\": 1, ";
     EXPECT_THROW(parse_json_text(object + "\"last\": 1}"), std::runtime_error);

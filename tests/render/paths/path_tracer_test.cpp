@@ -135,7 +135,7 @@ TEST(PathTracer, NoRayLeavesAClosedBox) {
 
 /// Paths of a hundred bounces: a limit on bounces, or roulette without scaling of the survivors, fails here.
 TEST(PathTracer, IsUnbiasedInAnAlmostWhiteBox) {
-    RELEASE_ONLY();  // see PathTracer.SameBitsForAnyNumberOfThreads
+    RELEASE_ONLY();  // see SharedPicture.HasTheBitsOfOneProcess
     const Scene box = closed_box(V3f(1, 2, 3), 1, {{"wall", Rgb(0.99f, 0.99f, 0.99f), Rgb(1, 1, 1)}});
     const View view{"corner", V3f(0.1f, 0.2f, 0.3f), V3f(0.9f, 1.8f, 2.8f), V3f(0, 0, 1), 80};
     const Pictures seen(box, view, {.width = 2, .height = 2, .samples = 128}, 16);
@@ -308,7 +308,7 @@ struct Room {
 /// The spread of the pictures matches their reported standard errors. In each run, the mean over the pixels of the
 /// squared deviation from the mean picture, less the squared standard error, has expectation 0.
 TEST(PathTracer, StandardErrorIsHonest) {
-    RELEASE_ONLY();  // see PathTracer.SameBitsForAnyNumberOfThreads
+    RELEASE_ONLY();  // see SharedPicture.HasTheBitsOfOneProcess
     const Room room;
     const Pictures seen(room.scene, room.view, {.width = 16, .height = 9, .samples = 64}, 48);
     const auto p_value = [&](double factor) {
@@ -334,7 +334,7 @@ TEST(PathTracer, StandardErrorIsHonest) {
 }
 
 TEST(PathTracer, ReachesItsTargetWithoutBias) {
-    RELEASE_ONLY();  // see PathTracer.SameBitsForAnyNumberOfThreads
+    RELEASE_ONLY();  // see SharedPicture.HasTheBitsOfOneProcess
     const Room room;
     const PictureOptions fixed{.width = 16, .height = 9, .samples = 512};
     PictureOptions adaptive = fixed;

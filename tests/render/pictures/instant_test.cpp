@@ -98,7 +98,7 @@ class InstantFurnace : public testing::TestWithParam<float> {};
 INSTANTIATE_TEST_SUITE_P(Rho, InstantFurnace, testing::Values(0.1f, 0.5f, 0.9f), testing_support::printed_name);
 
 TEST_P(InstantFurnace, IsUnbiasedAndWouldNoticeTwoPercent) {
-    RELEASE_ONLY();  // see Instant.SameBitsForAnyNumberOfThreads
+    RELEASE_ONLY();  // see SharedPicture.HasTheBitsOfOneProcess
     const Rgb rho = Rgb(1, 0.9f, 0.5f) * GetParam(), exitance(2, 1, 0.5f);
     const Scene box = closed_box(V3f(1, 2, 3), 2, {{"wall", rho, exitance}});
     const RgbD expected = RgbD(exitance) / (RgbD(1, 1, 1) - RgbD(rho)) / pi;
@@ -207,7 +207,7 @@ TEST(Instant, AgreesWithPathTracing) {
 
 /// With few lights, their positions cause most of the error, and all pixels of a batch share it.
 TEST(Instant, StandardErrorIncludesThatOfTheLights) {
-    RELEASE_ONLY();  // see Instant.SameBitsForAnyNumberOfThreads
+    RELEASE_ONLY();  // see SharedPicture.HasTheBitsOfOneProcess
     const Scene box = closed_box(V3f(1, 2, 3), 1, {{"wall", Rgb(0.8f), Rgb(1)}});
     const auto seen =
         pictures(Shading::instant, box, corner, {.width = 16, .height = 9, .samples = 64, .light_walks = 64}, 48);
