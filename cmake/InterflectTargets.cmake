@@ -44,6 +44,8 @@ function(interflect_folder name)
     target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <functional> <memory> <span>
                               <string> <vector> <ImathVec.h>)
   endif()
+  list(TRANSFORM arg_SOURCES PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
+  set_property(GLOBAL APPEND PROPERTY interflect_sources ${arg_SOURCES})
   set_property(GLOBAL APPEND PROPERTY interflect_folders ${target})
   set_property(GLOBAL APPEND PROPERTY interflect_public_links ${arg_LINKS})
   set_property(GLOBAL APPEND PROPERTY interflect_links ${arg_LINKS} ${arg_PRIVATE_LINKS})

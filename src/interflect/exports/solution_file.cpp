@@ -340,7 +340,7 @@ StateArchive read_state(const VerifiedFile& file) {
 }
 
 /// @throws std::runtime_error for an invalid scene or solution.
-std::string description_of(const Scene& scene, const Solution& solution) {
+std::string solution_description(const Scene& scene, const Solution& solution) {
     try {
         require_valid(scene);
         require_valid(solution);
@@ -408,7 +408,7 @@ void write_solution(const std::filesystem::path& path, const Scene& scene, const
 
 void detail::write_solution(const std::filesystem::path& path, const Scene& scene, const Solution& solution,
                             const StateArchive* state) {
-    const std::string description = description_of(scene, solution);
+    const std::string description = solution_description(scene, solution);
     std::vector<FileRange> ranges;
     {
         Hdf5Writer file(path, checksum_block_size);
@@ -418,7 +418,7 @@ void detail::write_solution(const std::filesystem::path& path, const Scene& scen
 }
 
 std::string detail::solution_image(const Scene& scene, const Solution& solution, const StateArchive* state) {
-    const std::string description = description_of(scene, solution);
+    const std::string description = solution_description(scene, solution);
     Hdf5Writer file;
     write_hdf5(file, description, scene, solution, state);
     return file.image();

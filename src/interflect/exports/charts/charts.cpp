@@ -183,7 +183,7 @@ std::vector<FlatPatches> flat_pieces(const Scene& scene, const std::vector<bool>
 using Points = std::vector<Imath::V2d>;
 
 /// Returns the convex hull, counter-clockwise, by Andrew's monotone chain (1979).
-Points convex_hull(Points points) {
+Points hull_of_chart(Points points) {
     std::sort(points.begin(), points.end(),
               [](const auto& a, const auto& b) { return std::tie(a.x, a.y) < std::tie(b.x, b.y); });
     Points hull;
@@ -305,7 +305,7 @@ std::vector<LightmapChart> make_charts(const Scene& scene, std::vector<bool> sho
             charts.push_back(chart_of(scene, moved_into(rectangle, std::move(layout)), options));
         }
     for (FlatPatches& layout : smooth_layouts(scene, shown, narrow_gap / options.texels_per_metre)) {
-        const Rectangle rectangle = smallest_rectangle(convex_hull(corners_of(layout)));
+        const Rectangle rectangle = smallest_rectangle(hull_of_chart(corners_of(layout)));
         charts.push_back(chart_of(scene, moved_into(rectangle, std::move(layout)), options));
     }
     return charts;

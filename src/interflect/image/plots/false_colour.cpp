@@ -5,8 +5,6 @@
 
 namespace interflect {
 
-using namespace detail;
-
 namespace {
 
 constexpr double ignored_value_share = 0.005;  // outside a logarithmic scale at each end

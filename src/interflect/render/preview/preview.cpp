@@ -22,7 +22,7 @@ using namespace detail;
 
 namespace {
 
-constexpr std::size_t pixels_per_task = 1024;
+constexpr std::size_t preview_pixels_per_task = 1024;
 
 /// Returns the options of the coarser picture. Its pixels are square, too.
 PictureOptions reduced(PictureOptions options, double reduction) {
@@ -69,7 +69,7 @@ Rendering preview(const Scene& scene, const Solution& solution, const RayCaster&
     const LitSurfaces surfaces(traced, solution, view, options, light, coarse,
                                static_cast<std::uint32_t>(preview_options.camera_rays()));
     std::atomic<std::int64_t> rays{0}, escaped{0};
-    parallel_for_ranges(result.image.pixels.size(), pixels_per_task, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(result.image.pixels.size(), preview_pixels_per_task, [&](std::size_t begin, std::size_t end) {
         if (monitor.stop && *monitor.stop) return;
         const RayCounts counts = surfaces.draw(begin, std::span(result.image.pixels).subspan(begin, end - begin));
         rays += counts.rays;

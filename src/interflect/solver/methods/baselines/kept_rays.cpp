@@ -26,7 +26,7 @@ namespace interflect::detail {
 
 namespace {
 
-constexpr std::size_t rays_per_task = 4096;
+constexpr std::size_t kept_rays_per_task = 4096;
 
 /// Parameters of a point on a patch, rounded to 16 bits.
 struct RoundedParameters {
@@ -259,7 +259,7 @@ void KeptRays::follow_forest(const ElementForest& forest) {
     quotas_.insert(quotas_.end(), of_parts.begin(), of_parts.end());
     inherit(forest, elements_, reflected_);
     elements_ = forest.size();
-    parallel_for_ranges(set_.size(), rays_per_task, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(set_.size(), kept_rays_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             KeptRay& ray = set_.rays[i];
             if (!set_.is_from_part(i)) ray.source = leaf_within(forest, ElementIndex(ray.source), ray.start);
@@ -281,7 +281,7 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
         std::uint8_t kind;
         Rgb transmittance;
     };
-    std::vector<std::vector<Behind>> behind((count + rays_per_task - 1) / rays_per_task);
+    std::vector<std::vector<Behind>> behind((count + kept_rays_per_task - 1) / kept_rays_per_task);
     const auto kept = [&](const Hit& hit, KeptRay ray, const Ray& traced) {
         if (hit.patch == none) return ray;
         const Parameters p = forest.geometry(hit.patch).parameters_of(traced.origin + hit.distance * traced.direction);
@@ -290,7 +290,7 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
         return ray;
     };
     parallel_for_ranges(
-        count, rays_per_task, state.work.stop.within_process(), [&](std::size_t begin, std::size_t end) {
+        count, kept_rays_per_task, state.work.stop.within_process(), [&](std::size_t begin, std::size_t end) {
             thread_local RayBatch batch;
             thread_local std::vector<Hit> hits;
             thread_local std::vector<Panes::HitBehind> hits_behind;
@@ -309,9 +309,9 @@ void KeptRays::shoot(SolverState& state, const RayPlan& plan) {
                     set_.rays[merged_ + begin + i] = kept(hits[i], ray, batch.rays[i]);
                     set_.kind[merged_ + begin + i] = kind;
                     for (; next != hits_behind.end() && next->ray == i; ++next)
-                        behind[begin / rays_per_task].push_back({kept(next->hit, ray, batch.rays[i]),
-                                                                 static_cast<std::uint8_t>(kind | RaySet::behind_pane),
-                                                                 next->transmittance});
+                        behind[begin / kept_rays_per_task].push_back(
+                            {kept(next->hit, ray, batch.rays[i]), static_cast<std::uint8_t>(kind | RaySet::behind_pane),
+                             next->transmittance});
                 }
             }
         });
@@ -354,7 +354,7 @@ Estimate KeptRays::received(SolverState& state, Range rays, const Quotas& quotas
 
 std::vector<std::int64_t> KeptRays::count_rays(Range rays, std::size_t sources) const {
     std::vector<std::int64_t> count(sources, 0);
-    parallel_for_ranges(rays.end - rays.begin, rays_per_task, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(rays.end - rays.begin, kept_rays_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = rays.begin + begin; i < rays.begin + end;) {
             const std::size_t first = i, source = set_.source(i, elements_);
             while (i < rays.begin + end && set_.source(i, elements_) == source) ++i;
@@ -374,7 +374,7 @@ RgbD KeptRays::scatter(SolverState& state, Range rays, const std::vector<RgbD>& 
     using ScatterBuffer = ContributionSums::ScatterBuffer;
     PerThread<ScatterBuffer> buffers([&] { return ScatterBuffer(sums); });
     Contribution escaped{};
-    parallel_for_ranges(rays.end - rays.begin, rays_per_task, [&](std::size_t begin, std::size_t end) {
+    parallel_for_ranges(rays.end - rays.begin, kept_rays_per_task, [&](std::size_t begin, std::size_t end) {
         ScatterBuffer& buffer = buffers.local();
         Contribution escaped_here{};
         for (std::size_t i = rays.begin + begin; i < rays.begin + end; ++i) {
