@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "interflect/base/numbers/random.h"
 #include "interflect/base/threads/parallel.h"
@@ -47,6 +48,10 @@ constexpr float full_effort_samples = 8;
 /// Reach of a record, relative to the harmonic mean length of its rays. With 0.35, errors are 1.1 to 1.8 times as
 /// large, even with 512 paths per record.
 constexpr float reach_over_length = 0.15f;
+/// Factor of distances along the normal, because light differs between parallel surfaces.
+constexpr float height_factor = 10;
+/// Minimum cosine of the angle between the normals of a point and a record in reach: 14 degrees.
+constexpr float min_cosine = 0.97f;
 /// Limits of the reach, in spacings of the points. With a minimum of 8, the indirect light of a room is 0.3% darker in
 /// a picture of 160 x 90 pixels.
 constexpr float min_spacings = 4, max_spacings = 100;
@@ -300,25 +305,35 @@ bool IndirectField::add_records(const PathPlan& plan, std::span<const SurfacePoi
 }
 
 void IndirectField::arrange_tree() {
-    tree_.resize(records_.size());
-    for (std::uint32_t i = 0; i < records_.size(); ++i) {
-        const Record& r = records_[i];
-        tree_[i] = {{r.position - V3f(r.reach), r.position + V3f(r.reach)}, i};
-    }
-    arrange_box_tree(tree_);
-    // Copy the reaches in the order of the tree. Then the indices of the tree refer to the copies
+    std::vector<Boxed> boxes(records_.size());
+    for (std::uint32_t i = 0; i < records_.size(); ++i) boxes[i] = {box_of_reach(records_[i]), i};
+    arrange_box_tree(boxes);  // near records become neighbours in memory
     reaches_.resize(records_.size());
     for (std::uint32_t i = 0; i < records_.size(); ++i) {
-        const std::uint32_t record = tree_[i].index;
-        const Record& r = records_[record];
+        const Record& r = records_[boxes[i].index];
         reaches_[i] = {.position = r.position,
                        .normal = r.normal,
                        .patch = r.patch,
                        .inverse_square = 1 / (r.reach * r.reach),
                        .inverse_square_elsewhere = 1 / (r.reach_elsewhere * r.reach_elsewhere),
-                       .record = record};
-        tree_[i].index = i;
+                       .record = boxes[i].index};
+        boxes[i] = {box_of_reach(r), i};
     }
+    tree_ = WideBoxTree(std::move(boxes));
+}
+
+/// Reach::relative_distance2() is at least 1 outside of this box.
+Imath::Box3f IndirectField::box_of_reach(const Record& record) {
+    // A point of the same normal is within reach / height_factor of the record's plane. For a normal at the cosine c,
+    // it is within sqrt(1 - c^2) sqrt(1 - (1 - c) / (1 - min_cosine)) of the reach more, which is below sqrt((1 -
+    // min_cosine) / 2).
+    const float height = 1 / height_factor + std::sqrt((1 - min_cosine) / 2);
+    V3f half_size;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float n = std::min(1.0f, std::abs(record.normal[axis]));
+        half_size[axis] = record.reach * (std::sqrt(1 - n * n) + n * height);
+    }
+    return {record.position - half_size, record.position + half_size};
 }
 
 void IndirectField::pool_variances() {
@@ -458,9 +473,6 @@ float IndirectField::distance_to_contact(const V3f& x, float max_distance) const
 }
 
 float IndirectField::Reach::relative_distance2(const V3f& x, const V3f& n, std::uint32_t of_patch) const {
-    constexpr float min_cosine = 0.97f;  // of the angle between the normals: 14 degrees
-    // Factor of distances along the normal, because light differs between parallel surfaces.
-    constexpr float height_factor = 10;
     const float cosine = normal.dot(n);
     if (cosine <= min_cosine) return 1;
     const V3f d = position - x;

@@ -9,6 +9,7 @@
 #include "interflect/base/sums/common_stop.h"
 #include "interflect/core.h"
 #include "interflect/geometry/search/box_tree.h"
+#include "interflect/geometry/search/wide_box_tree.h"
 #include "interflect/render/paths/group_mean.h"
 #include "interflect/render/paths/surface_points.h"
 #include "interflect/render/rays/path_plan.h"
@@ -51,8 +52,8 @@ class IndirectField {
     /// Calls visit(record, squared distance / squared reach) for each record that has x in its reach.
     template <class Visit>
     void visit_near(const V3f& x, const V3f& n, PatchIndex patch, const Visit& visit) const {
-        visit_box_tree(
-            std::span<const Boxed>(tree_), [&](const Imath::Box3f& box) { return box.intersects(x); },
+        tree_.search(
+            Imath::Box3f(x), [](const Imath::Box3f&) { return true; },
             [&](std::uint32_t i) {
                 const float distance2 = reaches_[i].relative_distance2(x, n, patch);
                 if (distance2 < 1) visit(reaches_[i].record, distance2);
@@ -76,7 +77,7 @@ class IndirectField {
 
         float variance() const { return group_variance / static_cast<float>(gathered.groups); }
     };
-    /// Position and reach of a record. They are stored apart from its light, because most records that a lookup tests
+    /// Position and reach of a record. They are stored apart from its light, because many records that a lookup tests
     /// are out of reach.
     struct Reach {
         V3f position, normal;
@@ -108,6 +109,7 @@ class IndirectField {
                 std::vector<float>* mean_lengths = nullptr);
     /// Adds a record at each point. Returns whether a stop was due.
     bool add_records(const PathPlan& plan, std::span<const SurfacePoint> points, const CommonStop& stop);
+    static Imath::Box3f box_of_reach(const Record& record);
     /// Updates tree_ and reaches_ to the records.
     void arrange_tree();
     /// Computes Record::group_variance.
@@ -138,7 +140,7 @@ class IndirectField {
     std::vector<Contact> contacts_;
     std::vector<Boxed> contact_tree_;
     std::vector<Record> records_;
-    std::vector<Boxed> tree_;  // bounding boxes of reaches_, in the same order
+    WideBoxTree tree_{{}};  // bounding boxes of reaches_
     std::vector<Reach> reaches_;
     std::int64_t rays_ = 0;
 };
