@@ -46,7 +46,8 @@ class OneWayTest {
     OneWayTest(const Scene& scene, const RayCaster& ray_caster)
         : scene_(scene), ray_caster_(ray_caster), materials_(scene, ray_caster) {}
 
-    /// Tests rays of equal power. @param source  Returns the patch at the start of ray i; `none` for luminaires.
+    /// Tests rays. @param source  Returns the patch at the start of ray i; `none` for luminaires.
+    /// @param power  Power of each ray, sum of the channels [lm or W].
     template <class Source>
     void add(std::span<const Ray> rays, const Source& source, double power) {
         std::vector<Outcome> outcomes(rays.size());

@@ -102,8 +102,8 @@ TEST_P(BelowAPlate, DirectLightIsUnbiased) {
     EXPECT_NEAR(std::sqrt(stated / true_square), 1, 0.1) << "the stated error is the true one";
 }
 
-/// At random heights, most points have no similar ones among the points before and after them. Then the coefficients
-/// come from the four rays of the other half. Seen to fail with those of the same half.
+/// At random heights, about a quarter of the points that share coefficients count as one surface, so few rays determine
+/// the coefficients. Seen to fail with those of the same half.
 TEST(DirectLight, IsUnbiasedWithFewSimilarPoints) {
     RELEASE_ONLY();                    // see BelowAPlate
     constexpr float wide_hole = 1.2f;  // the brightest part of the lamp is visible
@@ -170,20 +170,20 @@ TEST(UnoccludedLight, IsTheMeanOfTheSamples) {
     for (const Patch& patch : scene.patches) geometry.emplace_back(scene, patch);
     const LightSources sources(scene, geometry);
     const UnoccludedLight unoccluded(scene, geometry);
-    const std::vector<std::uint8_t> all_lamps(unoccluded.lamp_count(), 1);
+    const std::vector<std::uint8_t> all_groups(unoccluded.group_count(), 1);
     const V3f x(0.1f, -0.3f, 0.6f);
     for (const V3f& n : {V3f(0, 0, 1), V3f(0.8f, 0, 0.6f)})
         for (const SourceKind kind : source_kinds) {
             ASSERT_TRUE(unoccluded.has(kind));
-            const auto& [first, last] = unoccluded.lamps_by_kind()[static_cast<std::size_t>(kind)];
+            const auto& [first, last] = unoccluded.groups_by_kind()[static_cast<std::size_t>(kind)];
             std::vector<double> differences, sums;
             for (std::uint64_t i = 0; i < 20'000; ++i) {
                 const auto a = random_words(3, i), b = random_words(4, i);
                 const LightSample numbers{(a[0] + 0.5) * 0x1p-32, unit_float(a[1]), unit_float(a[2]), unit_float(a[3])};
-                std::vector<Rgb> by_lamp(unoccluded.lamp_count(), Rgb(0));
-                unoccluded.add(x, n, unit_float(b[0]), unit_float(b[1]), all_lamps, by_lamp);
-                const Rgb all = std::accumulate(by_lamp.begin() + static_cast<std::ptrdiff_t>(first),
-                                                by_lamp.begin() + static_cast<std::ptrdiff_t>(last), Rgb(0));
+                std::vector<Rgb> by_group(unoccluded.group_count(), Rgb(0));
+                unoccluded.add(x, n, unit_float(b[0]), unit_float(b[1]), all_groups, by_group);
+                const Rgb all = std::accumulate(by_group.begin() + static_cast<std::ptrdiff_t>(first),
+                                                by_group.begin() + static_cast<std::ptrdiff_t>(last), Rgb(0));
                 differences.push_back(static_cast<double>(sources.sample(kind, x, n, numbers).irradiance.x - all.x));
                 sums.push_back(static_cast<double>(all.x));
             }
@@ -192,7 +192,7 @@ TEST(UnoccludedLight, IsTheMeanOfTheSamples) {
         }
 }
 
-/// Each lamp is a group of near sources, and no source is missing.
+/// No source is missing in the groups.
 TEST(UnoccludedLight, GroupsNearSources) {
     Scene scene = closed_box({4, 3, 2.5f}, 1, {Material{"", Rgb(0.5f)}});
     const std::uint32_t bright = add_material(scene, Rgb(0), Rgb(1000));
@@ -208,14 +208,14 @@ TEST(UnoccludedLight, GroupsNearSources) {
     for (const Patch& patch : scene.patches) geometry.emplace_back(scene, patch);
     const UnoccludedLight unoccluded(scene, geometry);
     ASSERT_TRUE(unoccluded.has(SourceKind::patches));
-    EXPECT_EQ(unoccluded.lamp_count(), UnoccludedLight::max_lamps_of_kind);
-    std::vector<int> patches(unoccluded.lamp_count(), 0);
+    EXPECT_EQ(unoccluded.group_count(), UnoccludedLight::max_groups_of_kind);
+    std::vector<int> patches(unoccluded.group_count(), 0);
     for (const auto& [first, last] : panels)
-        for (std::uint32_t i = first; i < last; ++i) ++patches.at(unoccluded.lamp_of(SourceKind::patches, i));
+        for (std::uint32_t i = first; i < last; ++i) ++patches.at(unoccluded.group_of(SourceKind::patches, i));
     for (const int count : patches) EXPECT_GT(count, 0);
     const V3f below(2, 1.5f, 0), up(0, 0, 1);
-    std::vector<Rgb> by_lamp(unoccluded.lamp_count(), Rgb(0));
-    unoccluded.add(below, up, 0.5f, 0.5f, std::vector<std::uint8_t>(unoccluded.lamp_count(), 1), by_lamp);
+    std::vector<Rgb> by_group(unoccluded.group_count(), Rgb(0));
+    unoccluded.add(below, up, 0.5f, 0.5f, std::vector<std::uint8_t>(unoccluded.group_count(), 1), by_group);
     double expected = 0;
     for (const auto& [first, last] : panels)
         for (std::uint32_t i = first; i < last; ++i) {
@@ -223,7 +223,7 @@ TEST(UnoccludedLight, GroupsNearSources) {
             for (std::size_t k = 0; k < 4; ++k) corners[k] = scene.vertices[scene.patches[i].vertices[k]];
             expected += 1000 * static_cast<double>(polygon_irradiance(corners, below, up)) / std::numbers::pi;
         }
-    const double sum = static_cast<double>(std::accumulate(by_lamp.begin(), by_lamp.end(), Rgb(0)).x);
+    const double sum = static_cast<double>(std::accumulate(by_group.begin(), by_group.end(), Rgb(0)).x);
     EXPECT_NEAR(sum, expected, 1e-4 * expected);
 }
 

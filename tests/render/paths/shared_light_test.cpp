@@ -14,6 +14,7 @@
 #include "interflect/render/shared_light.h"
 #include "interflect/render/sharing/light_order.h"
 #include "interflect/solve.h"
+#include "tests/support/release_only.h"
 #include "tests/support/scenes/scenes.h"
 #include "tests/support/thread_ranks.h"
 
@@ -116,6 +117,14 @@ TEST_P(SharedPicture, HasTheBitsOfOneProcess) {
                                  .max_samples = 128,
                                  .until = GetParam().until,
                                  .light_walks = 1000};
+    const Rendering alone = draw(options, {});
+    with_helpers(3, [&](const Monitor& monitor) { expect_equal(draw(options, monitor), alone); });
+}
+
+/// Direct light of near pixels shares coefficients, also where more paths are traced than one process traces at once.
+TEST(SharedPicture, OfManyHybridPathsHasTheBitsOfOneProcess) {
+    RELEASE_ONLY();  // see SharedPicture.HasTheBitsOfOneProcess
+    const PictureOptions options{.width = 320, .height = 280, .shading = Shading::hybrid, .samples = 6};
     const Rendering alone = draw(options, {});
     with_helpers(3, [&](const Monitor& monitor) { expect_equal(draw(options, monitor), alone); });
 }

@@ -66,7 +66,8 @@ class GaugeTile {
 
     /// Returns the factor, a power of two, by which more samples would reduce the error to the target. Estimates it
     /// from the gauges next to gauge i in the list, which are usually near it in space. Excludes gauge i itself: a
-    /// number of samples that depends on its own would bias its mean.
+    /// number of samples that depends on its own would bias its mean. They still depend on it weakly, by the
+    /// coefficients of DirectLight that near gauges share.
     std::uint32_t needed_factor(std::size_t i) const {
         constexpr std::size_t reach = 4;
         const double target = plan_.options.until > 0 ? plan_.options.until : hybrid_target;

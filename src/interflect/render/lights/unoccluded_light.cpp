@@ -96,14 +96,14 @@ Imath::Box3f bounds_of_places(std::span<const UnoccludedLight::Source> sources) 
 
 float diagonal(std::span<const UnoccludedLight::Source> sources) { return bounds_of_places(sources).size().length(); }
 
-/// Divides sources into at most `most` groups of near ones, which are consecutive afterwards: the group of the largest
-/// extent is halved again and again.
+/// Divides sources into at most `max_groups` groups, each of consecutive ones: repeatedly halves the group with the
+/// longest diagonal.
 std::vector<std::span<UnoccludedLight::Source>> near_groups(std::span<UnoccludedLight::Source> sources,
-                                                            std::size_t most) {
+                                                            std::size_t max_groups) {
     using Source = UnoccludedLight::Source;
     if (sources.empty()) return {};
     std::vector<std::span<Source>> groups{sources};
-    while (groups.size() < most) {
+    while (groups.size() < max_groups) {
         const auto largest = std::max_element(groups.begin(), groups.end(),
                                               [](const auto& a, const auto& b) { return diagonal(a) < diagonal(b); });
         const std::span<Source> group = *largest;
@@ -138,7 +138,7 @@ float polygon_irradiance(std::span<const V3f> vertices, const V3f& x, const V3f&
     return std::abs(sum) / 2;
 }
 
-void UnoccludedLight::PatchGroup::add(const Scene& scene, PatchIndex patch) {
+void UnoccludedLight::PatchPack::add(const Scene& scene, PatchIndex patch) {
     const Patch& p = scene.patches[patch];
     for (std::size_t c = 0; c < x.size(); ++c) {
         const std::size_t last = static_cast<std::size_t>(p.vertex_count()) - 1;
@@ -151,7 +151,7 @@ void UnoccludedLight::PatchGroup::add(const Scene& scene, PatchIndex patch) {
 }
 
 /// Evaluates Lambert's formula as polygon_irradiance() does, for eight patches at once and without clipping.
-UnoccludedLight::PatchGroup::Irradiance UnoccludedLight::PatchGroup::at(const V3f& p, const V3f& n) const {
+UnoccludedLight::PatchPack::Irradiance UnoccludedLight::PatchPack::at(const V3f& p, const V3f& n) const {
     constexpr float least_cosine = -0.9f;     // between corners; rounding dominates beyond this angle
     std::array<Numbers, 4> to_x, to_y, to_z;  // unit vectors to the corners
     Irradiance found;
@@ -187,8 +187,8 @@ UnoccludedLight::PatchGroup::Irradiance UnoccludedLight::PatchGroup::at(const V3
 UnoccludedLight::UnoccludedLight(const Scene& scene, std::span<const PatchGeometry> geometry)
     : scene_(scene),
       geometry_(geometry),
-      lamp_of_patch_(scene.patches.size(), none),
-      lamp_of_luminaire_(scene.luminaires.size(), none) {
+      group_of_patch_(scene.patches.size(), none),
+      group_of_luminaire_(scene.luminaires.size(), none) {
     std::array<std::vector<Source>, source_kinds.size()> sources;
     bool has_texture = false;
     for (PatchIndex i{0}; i < scene.patches.size(); ++i) {
@@ -207,23 +207,23 @@ UnoccludedLight::UnoccludedLight(const Scene& scene, std::span<const PatchGeomet
         const bool is_patches = kind == SourceKind::patches;
         is_available_[k] =
             sources[k].size() <= (is_patches ? max_patches : max_luminaires) && !(is_patches && has_texture);
-        lamps_by_kind_[k].first = lamp_count();
-        if (is_available_[k]) add_lamps(kind, sources[k]);
-        lamps_by_kind_[k].second = lamp_count();
+        groups_by_kind_[k].first = group_count();
+        if (is_available_[k]) add_groups(kind, sources[k]);
+        groups_by_kind_[k].second = group_count();
     }
 }
 
-void UnoccludedLight::add_lamps(SourceKind kind, std::span<Source> sources) {
-    for (const std::span<Source> lamp : near_groups(sources, max_lamps_of_kind)) {
-        const auto number = static_cast<std::uint32_t>(lamp_count());
+void UnoccludedLight::add_groups(SourceKind kind, std::span<Source> sources) {
+    for (const std::span<Source> group : near_groups(sources, max_groups_of_kind)) {
+        const auto number = static_cast<std::uint32_t>(group_count());
         is_exact_.push_back(1);
-        for (const Source& source : lamp)
+        for (const Source& source : group)
             if (kind == SourceKind::patches) {
-                lamp_of_patch_[source.index] = number;
-                if (groups_.empty() || groups_.back().count == PatchGroup::size) groups_.emplace_back();
-                groups_.back().add(scene_, PatchIndex(source.index));
+                group_of_patch_[source.index] = number;
+                if (patch_packs_.empty() || patch_packs_.back().count == PatchPack::size) patch_packs_.emplace_back();
+                patch_packs_.back().add(scene_, PatchIndex(source.index));
             } else {
-                lamp_of_luminaire_[source.index] = number;
+                group_of_luminaire_[source.index] = number;
                 luminaires_.push_back(source.index);
                 is_exact_.back() &= has_exact_light(scene_.luminaires[source.index]);
             }
@@ -231,24 +231,24 @@ void UnoccludedLight::add_lamps(SourceKind kind, std::span<Source> sources) {
 }
 
 void UnoccludedLight::add(const V3f& x, const V3f& n, float u, float v, std::span<const std::uint8_t> is_needed,
-                          std::span<Rgb> by_lamp) const {
-    for (const PatchGroup& group : groups_) {
-        const auto patches = std::span(group.patches).first(group.count);
-        const auto is_used = [&](PatchIndex patch) { return is_needed[lamp_of_patch_[patch]] != 0; };
+                          std::span<Rgb> by_group) const {
+    for (const PatchPack& pack : patch_packs_) {
+        const auto patches = std::span(pack.patches).first(pack.count);
+        const auto is_used = [&](PatchIndex patch) { return is_needed[group_of_patch_[patch]] != 0; };
         if (std::none_of(patches.begin(), patches.end(), is_used)) continue;
-        const PatchGroup::Irradiance found = group.at(x, n);
-        for (std::size_t i = 0; i < group.count; ++i) {
-            const PatchIndex patch = group.patches[i];
+        const PatchPack::Irradiance found = pack.at(x, n);
+        for (std::size_t i = 0; i < pack.count; ++i) {
+            const PatchIndex patch = pack.patches[i];
             const PatchGeometry& geometry = geometry_[patch];
             if (geometry.normal().dot(x - geometry.shape().origin) <= 0) continue;
             const float of_unit_radiance = found.is_exact[i] ? found.of_unit_radiance[i] : by_patch(patch, x, n);
-            by_lamp[lamp_of_patch_[patch]] += scene_.materials[scene_.patches[patch].material].exitance *
-                                              (of_unit_radiance / std::numbers::pi_v<float>);
+            by_group[group_of_patch_[patch]] += scene_.materials[scene_.patches[patch].material].exitance *
+                                                (of_unit_radiance / std::numbers::pi_v<float>);
         }
     }
     for (const std::uint32_t i : luminaires_)
-        if (const std::uint32_t lamp = lamp_of_luminaire_[i]; is_needed[lamp] != 0)
-            by_lamp[lamp] += by_luminaire(scene_.luminaires[i], x, n, u, v);
+        if (const std::uint32_t group = group_of_luminaire_[i]; is_needed[group] != 0)
+            by_group[group] += by_luminaire(scene_.luminaires[i], x, n, u, v);
 }
 
 float UnoccludedLight::by_patch(PatchIndex patch, const V3f& x, const V3f& n) const {

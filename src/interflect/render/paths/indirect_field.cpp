@@ -322,11 +322,11 @@ void IndirectField::arrange_tree() {
     tree_ = WideBoxTree(std::move(boxes));
 }
 
-/// Reach::relative_distance2() is at least 1 outside of this box.
+/// Outside of this box, Reach::relative_distance2() is at least 1.
 Imath::Box3f IndirectField::box_of_reach(const Record& record) {
-    // A point of the same normal is within reach / height_factor of the record's plane. For a normal at the cosine c,
-    // it is within sqrt(1 - c^2) sqrt(1 - (1 - c) / (1 - min_cosine)) of the reach more, which is below sqrt((1 -
-    // min_cosine) / 2).
+    // With d the distance and c the cosine between the normals, the height above the record's plane is at most
+    // reach / height_factor + d sqrt(1 - c^2), and d at most reach sqrt(1 - (1 - c) / (1 - min_cosine)). So the second
+    // term is at most reach sqrt((1 - min_cosine) / 2).
     const float height = 1 / height_factor + std::sqrt((1 - min_cosine) / 2);
     V3f half_size;
     for (int axis = 0; axis < 3; ++axis) {

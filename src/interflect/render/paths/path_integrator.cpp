@@ -278,16 +278,16 @@ void PathIntegrator::connect_to_sources(const Path& path, bool is_first_point) {
     for (const SourceKind kind : source_kinds) {
         if (kind == SourceKind::suns && vertex_ == 1 && !plan_.has_direct_sunlight) continue;
         const std::uint32_t count = plan_.sources().useful_rays(kind, path.sampling.rays);
-        const bool is_of_point = is_first_point && plan_.scene.unoccluded_light.has(kind);
+        const bool uses_direct_light = is_first_point && plan_.scene.unoccluded_light.has(kind);
         for (std::uint32_t number = 0; number < count; ++number)
-            connect_to_source(path, {kind, number, count}, is_of_point);
+            connect_to_source(path, {kind, number, count}, uses_direct_light);
     }
     const std::uint32_t sky_rays = path.sampling.rays;
     for (std::uint32_t number = 0; number < sky_rays; ++number)
         connect_to_sky(path, path.index_in_sequence * sky_rays + number);
 }
 
-void PathIntegrator::connect_to_source(const Path& path, const SourceRay& ray, bool is_of_point) {
+void PathIntegrator::connect_to_source(const Path& path, const SourceRay& ray, bool uses_direct_light) {
     const LightSample numbers = light_sample(keys_[path.half_batch], vertex_, stream_of(ray.kind),
                                              path.index_in_sequence * ray.count + ray.number);
     const SourceSample source = plan_.sources().sample(ray.kind, path.position, path.normal, numbers);
@@ -296,7 +296,7 @@ void PathIntegrator::connect_to_source(const Path& path, const SourceRay& ray, b
     const Rgb irradiance = source.irradiance / count;
     shadow_rays_.add({path.position, source.direction}, source.patch, source.distance);
     Connection connection{.half_batch = path.half_batch, .bounces = vertex_};
-    if (is_of_point) {
+    if (uses_direct_light) {
         connection.light = irradiance;
         connection.direct_ray = direct_light_.add_ray(ray.kind, source.index, irradiance);
     } else {

@@ -93,8 +93,8 @@ class PathIntegrator {
     /// Sends shadow rays to the light sources and the sky.
     /// @param is_first_point  Whether the path's vertex is the last point of DirectLight.
     void connect_to_sources(const Path& path, bool is_first_point);
-    /// @param is_of_point  Whether DirectLight receives the light.
-    void connect_to_source(const Path& path, const SourceRay& ray, bool is_of_point);
+    /// @param uses_direct_light  Whether DirectLight receives the light.
+    void connect_to_source(const Path& path, const SourceRay& ray, bool uses_direct_light);
     /// @param index  Index of the shadow ray in the sequence of all rays from this vertex to the sky.
     void connect_to_sky(const Path& path, std::uint32_t index);
     V3f sample_sky_direction(const Path& path, std::uint32_t index) const;

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "interflect/core.h"
-#include "interflect/render/lights/light_sources.h"
 #include "interflect/render/rays/path_plan.h"
 #include "interflect/render/rays/path_rays.h"
 #include "interflect/render/rays/sample_batch.h"
@@ -15,8 +13,8 @@ namespace interflect::detail {
 
 /// Recorded indirect light at the first points of paths in hybrid shading.
 ///
-/// Each group of near points on a patch shares a lookup of IndirectField. It is biased by the
-/// interpolation. PathLight::record_error contains noise and bias.
+/// Near points on a patch share a lookup of IndirectField, whose interpolation biases the light.
+/// PathLight::record_error contains noise and bias.
 class RecordLookups {
   public:
     explicit RecordLookups(const PathPlan& plan) : plan_(plan) {}

@@ -32,8 +32,9 @@ constexpr int min_parts = 8;
 constexpr int largest_half_batch = 64;
 bool has_time_limit(const PictureOptions& options) { return std::isfinite(options.time); }
 
-/// Returns the pixels of a picture in nested blocks of 2 x 2 to 32 x 32, so that consecutive pixels are neighbours,
-/// which see similar light. Returns gauges in their order.
+/// Returns the pixels of a picture in nested blocks of 2 x 2 to 32 x 32: consecutive pixels, which share coefficients
+/// of DirectLight, are neighbours. With two paths a pixel, a block is a tile of SharedBatches. Returns gauges in their
+/// order.
 std::vector<std::uint32_t> order_of_pixels(const PathPlan& plan) {
     const auto width = static_cast<std::uint32_t>(plan.options.width),
                height = static_cast<std::uint32_t>(plan.options.height);
@@ -236,7 +237,7 @@ class PathPicture {
                 present[i] += chunk.back().half_size;
                 paths += 2 * std::size_t{chunk.back().half_size};
                 more = has_traced = true;
-                if (paths >= SharedBatches::paths_at_once(monitor_.ranks)) {
+                if (paths >= SharedBatches::paths_at_once(plan_, monitor_.ranks)) {
                     trace_chunk(chunk);
                     paths = 0;
                 }
@@ -292,7 +293,7 @@ class PathPicture {
             if (batch.half_size == 0) continue;
             chunk.push_back(batch);
             rays += 2 * std::size_t{batch.half_size};
-            if (rays >= SharedBatches::paths_at_once(monitor_.ranks)) trace_and_use();
+            if (rays >= SharedBatches::paths_at_once(plan_, monitor_.ranks)) trace_and_use();
         }
         if (!chunk.empty()) trace_and_use();
     }

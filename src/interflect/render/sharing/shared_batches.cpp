@@ -8,9 +8,9 @@
 
 namespace interflect::detail {
 
-std::size_t SharedBatches::paths_at_once(const Ranks* ranks) {
+std::size_t SharedBatches::paths_at_once(const PathPlan& plan, const Ranks* ranks) {
     constexpr std::size_t paths_of_process = std::size_t{1} << 19;
-    return paths_of_process * (ranks ? static_cast<std::size_t>(ranks->count()) : 1);
+    return paths_of_process * (ranks && !plan.hybrid ? static_cast<std::size_t>(ranks->count()) : 1);
 }
 
 RayCounts SharedBatches::trace(std::span<SampleBatch> batches, const std::function<bool()>& is_over, bool is_limited) {

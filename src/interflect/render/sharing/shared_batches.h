@@ -26,7 +26,9 @@ class SharedBatches {
         : virtual_lights_(virtual_lights), ranks_(ranks), integrators_([&plan] { return PathIntegrator(plan); }) {}
 
     /// Returns the number of paths to pass to one call of trace(), enough to occupy all processes.
-    static std::size_t paths_at_once(const Ranks* ranks);
+    /// In hybrid shading it does not depend on their number, because batches of a tile share coefficients of
+    /// DirectLight.
+    static std::size_t paths_at_once(const PathPlan& plan, const Ranks* ranks);
     bool is_helper() const { return ranks_ && ranks_->rank() != 0; }
 
     // For rank 0:

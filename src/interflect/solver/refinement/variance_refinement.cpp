@@ -81,6 +81,7 @@ class VarianceOracle {
 
     template <class GetExpected>
     bool splits(ElementIndex leaf, const GetExpected& expected, double min_gain) const {
+        // Without importance, both criteria have weight 0.
         if (!psi_.empty() && psi_[leaf] == 0 && state_.light.solution.view_importance[leaf] == 0) return false;
         const auto [signal, noise] = expected();
         if (!(signal > min_signal * noise)) return false;

@@ -11,7 +11,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Average number of points of a bucket, if they are fewer than the leaves.
+/// Mean number of points in a bucket; a bucket with more has a single leaf.
 constexpr std::size_t points_of_bucket = 4;
 constexpr std::size_t buckets_per_task = 1024;
 
