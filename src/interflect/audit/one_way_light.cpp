@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,9 @@ struct LightByFace {
     }
 };
 
+/// Number of rays that are tested together. All of them would take megabytes.
+constexpr std::size_t rays_at_once = 1 << 12;
+
 /// Compares the hits of light rays with the hits of the reversed rays.
 class OneWayTest {
   public:
@@ -50,16 +54,20 @@ class OneWayTest {
     /// @param power  Power of each ray, sum of the channels [lm or W].
     template <class Source>
     void add(std::span<const Ray> rays, const Source& source, double power) {
-        std::vector<Outcome> outcomes(rays.size());
-        constexpr std::size_t rays_per_task = 256;
-        parallel_for_ranges(rays.size(), rays_per_task, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) outcomes[i] = test(rays[i], source(i));
-        });
-        for (const Outcome& outcome : outcomes) {
-            if (outcome.is_received) received_ += power;
-            for (const Crossing& crossing : outcome.crossings)
-                (crossing.is_extra ? extra_ : missing_)
-                    .add(scene_.patches[crossing.face], power, spread(crossing.place, crossing.patch));
+        std::vector<Outcome> outcomes;
+        for (std::size_t first = 0; first < rays.size(); first += rays_at_once) {
+            const auto some = rays.subspan(first, std::min(rays_at_once, rays.size() - first));
+            outcomes.assign(some.size(), {});
+            constexpr std::size_t rays_per_task = 256;
+            parallel_for_ranges(some.size(), rays_per_task, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) outcomes[i] = test(some[i], source(first + i));
+            });
+            for (const Outcome& outcome : outcomes) {
+                if (outcome.is_received) received_ += power;
+                for (const Crossing& crossing : outcome.crossings)
+                    (crossing.is_extra ? extra_ : missing_)
+                        .add(scene_.patches[crossing.face], power, spread(crossing.place, crossing.patch));
+            }
         }
     }
     OneWayLight result() const {
@@ -157,10 +165,14 @@ void add_surfaces(const Scene& scene, const RayCaster& ray_caster, const Solutio
     std::uint64_t sample = 0;
     const SampledSources from = sample_sources(scene, ray_caster, solution);
     std::vector<Ray> rays;
-    for (const ElementIndex leaf : from.leaves)
-        rays.push_back(ray_from(leaf, *solution.forest, ray_caster, sample++, points));
-    test.add(
-        rays, [&](std::size_t i) { return solution.forest->patch(from.leaves[i]); }, from.power_of_each());
+    for (std::size_t first = 0; first < from.leaves.size(); first += rays_at_once) {
+        const auto leaves = std::span(from.leaves).subspan(first, std::min(rays_at_once, from.leaves.size() - first));
+        rays.clear();
+        for (const ElementIndex leaf : leaves)
+            rays.push_back(ray_from(leaf, *solution.forest, ray_caster, sample++, points));
+        test.add(
+            rays, [&](std::size_t i) { return solution.forest->patch(leaves[i]); }, from.power_of_each());
+    }
 }
 
 /// Traces rays of each luminaire part. Their number is in proportion to its power, rounded up.
