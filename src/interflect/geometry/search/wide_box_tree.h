@@ -43,10 +43,12 @@ class WideBoxTree {
         std::uint32_t intersecting(const Imath::Box3f& b) const {
             std::uint32_t children = 0;
             for (std::uint32_t i = 0; i < width; ++i) {
-                const bool intersects =
-                    static_cast<bool>((min[0][i] <= b.max.x) & (max[0][i] >= b.min.x) & (min[1][i] <= b.max.y) &
-                                      (max[1][i] >= b.min.y) & (min[2][i] <= b.max.z) & (max[2][i] >= b.min.z));
-                children |= std::uint32_t{intersects} << i;
+                std::uint32_t intersects = 1;
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    const auto c = static_cast<int>(axis);
+                    intersects &= std::uint32_t{min[axis][i] <= b.max[c]} & std::uint32_t{max[axis][i] >= b.min[c]};
+                }
+                children |= intersects << i;
             }
             return children;
         }

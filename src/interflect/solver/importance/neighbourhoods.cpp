@@ -16,7 +16,7 @@ using Patches = std::span<PatchIndex>;
 
 std::size_t half(std::size_t count) { return count / 2; }
 
-constexpr std::size_t patches_per_task = 1 << 12;
+constexpr std::size_t patches_at_once = 1 << 12;
 
 void arrange(Patches patches, const std::vector<V3f>& centres) {
     if (patches.size() < 2) return;
@@ -29,7 +29,7 @@ void arrange(Patches patches, const std::vector<V3f>& centres) {
     });
     const auto arrange_first = [&] { arrange(patches.first(half(patches.size())), centres); };
     const auto arrange_second = [&] { arrange(patches.subspan(half(patches.size())), centres); };
-    if (patches.size() >= patches_per_task) return parallel_invoke(arrange_first, arrange_second);
+    if (patches.size() >= patches_at_once) return parallel_invoke(arrange_first, arrange_second);
     arrange_first();
     arrange_second();
 }
