@@ -69,6 +69,16 @@ std::vector<Gauge> gauges_on_floor(std::size_t count) {
     return gauges;
 }
 
+/// Gauges in space, at most half a metre from x in both directions.
+std::vector<Gauge> gauges_around(const V3f& x) {
+    std::vector<Gauge> gauges = gauges_on_floor(2000);
+    for (Gauge& g : gauges) {
+        g.position += x;
+        g.patch = no_patch;
+    }
+    return gauges;
+}
+
 /// Fixed counts, and counts that follow the noise.
 class BelowAPlate : public testing::TestWithParam<std::tuple<int, double>> {};
 INSTANTIATE_TEST_SUITE_P(SamplesAndTarget, BelowAPlate,
@@ -263,12 +273,7 @@ TEST(DirectLight, HasLittleNoiseWhereEachLampIsVisibleOrHidden) {
     }
     const RayCaster ray_caster(scene);
     const TracedScene traced(scene, ray_caster);
-    std::vector<Gauge> gauges;
-    for (Gauge g : gauges_on_floor(2000)) {
-        g.position += V3f(6, 1.5f, 0.01f);
-        g.patch = no_patch;
-        gauges.push_back(g);
-    }
+    const std::vector<Gauge> gauges = gauges_around({6, 1.5f, 0.01f});
     const PictureOptions options{.samples = 2, .quantity = PictureQuantity::irradiance};
     const auto light = direct_irradiance(traced, gauges, options, {});
     double squares = 0;
@@ -288,12 +293,7 @@ double noise_beside(Hidden hidden, bool has_patch, int samples) {
     const Scene scene = room_beside(hidden, has_patch);
     const RayCaster ray_caster(scene);
     const TracedScene traced(scene, ray_caster);
-    std::vector<Gauge> gauges;
-    for (Gauge g : gauges_on_floor(2000)) {
-        g.position += V3f(2.8f, 1.5f, 0.01f);
-        g.patch = no_patch;
-        gauges.push_back(g);
-    }
+    const std::vector<Gauge> gauges = gauges_around({2.8f, 1.5f, 0.01f});
     PictureOptions options{.samples = samples, .quantity = PictureQuantity::irradiance};
     double squares = 0;
     const auto a = direct_irradiance(traced, gauges, options, {});
