@@ -165,9 +165,11 @@ std::vector<GatheredGroup> gather_groups(const PathPlan& plan, std::span<SampleB
         integrator.trace(batches.subspan(begin, end - begin));
         for (std::size_t i = begin; i < end; ++i) {
             const SampleBatch& b = batches[i];
+            FirstHit first = b.first[0];
+            first += b.first[1];
             groups[i] = {.record = b.pixel,
                          .is_done = b.done,
-                         .lengths = {static_cast<float>(b.first.inverse_length), static_cast<float>(b.first.hits)},
+                         .lengths = {static_cast<float>(first.inverse_length), static_cast<float>(first.hits)},
                          .indirect = {b.halves[0].indirect, b.halves[1].indirect}};
         }
         groups[begin].rays = integrator.counts().rays;

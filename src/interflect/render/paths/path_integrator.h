@@ -6,6 +6,7 @@
 
 #include "interflect/render/direct/direct_light.h"
 #include "interflect/render/paths/record_lookups.h"
+#include "interflect/render/rays/nearby_light.h"
 #include "interflect/render/rays/path_plan.h"
 #include "interflect/render/rays/path_rays.h"
 #include "interflect/render/rays/sample_batch.h"
@@ -30,7 +31,8 @@ class PathIntegrator {
         : plan_(plan), record_lookups_(plan), direct_light_(plan.scene.unoccluded_light) {}
 
     /// Traces the paths of all batches and stores their light there. Later calls reuse the memory.
-    void trace(std::span<SampleBatch> batches);
+    /// @param nearby  Predicts the light of first hits, with the elements of the solution; null: these alone do.
+    void trace(std::span<SampleBatch> batches, const NearbyLight* nearby = nullptr);
     /// Returns the counts of the last call of trace().
     const RayCounts& counts() const { return counts_; }
 
@@ -74,9 +76,11 @@ class PathIntegrator {
     bool next_surfaces_are_white() const { return vertex_ == 1 && plan_.shows_irradiance(); }
     void add_sky(const Path& path, const V3f& direction);
     void add_emission(const SurfaceHit& hit, const Path& path);
+    /// Predicts the reflected radiance of a first hit.
+    Rgb predicted_radiance(const SurfaceHit& hit, const Path& path);
     /// Adds the light of a first hit that is known without further rays.
     /// @param emitted    Radiance of the sky or surface.
-    /// @param predicted  Reflected radiance of the surface by the elements of a solution.
+    /// @param predicted  Predicted reflected radiance of the surface.
     void add_prediction(const Path& path, const Rgb& emitted, const Rgb& predicted);
     /// Adds the known light of the hit if the path ends there. Returns whether it does.
     bool end_at_known_light(const SurfaceHit& hit, const Path& path);
@@ -122,9 +126,12 @@ class PathIntegrator {
 
     const PathPlan& plan_;
     std::uint32_t vertex_ = 1;  // number of the current vertex: 0 for the camera, 1 for first surfaces and gauges
-    std::vector<std::uint64_t> keys_;   // random key of each half batch
-    std::vector<PathLight> light_;      // light of each half batch
-    std::vector<FirstHit> first_hits_;  // first hit of each sample
+    const NearbyLight* nearby_ = nullptr;
+    NearbyLightLookups nearby_lookups_;
+    std::vector<std::uint32_t> pixels_;  // pixel of each batch
+    std::vector<std::uint64_t> keys_;    // random key of each half batch
+    std::vector<PathLight> light_;       // light of each half batch
+    std::vector<FirstHit> first_hits_;   // first hit of each sample
     PathRays paths_;
     ShadowRays shadow_rays_;
     std::vector<Connection> connections_;  // one for each shadow ray

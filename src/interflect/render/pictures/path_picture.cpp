@@ -18,6 +18,7 @@
 #include "interflect/core.h"
 #include "interflect/render/pictures/camera_samples.h"
 #include "interflect/render/pictures/pixel_statistics.h"
+#include "interflect/render/rays/nearby_light.h"
 #include "interflect/render/reflections/virtual_lights.h"
 #include "interflect/render/sharing/light_order.h"
 #include "interflect/render/sharing/shared_batches.h"
@@ -84,9 +85,14 @@ class PathPicture {
         const std::uint32_t least =
             plan_.hybrid || has_time_limit(options_) ? std::min(requested, least_parts * first_samples()) : requested;
         expected_samples_ = static_cast<double>(least) * static_cast<double>(pixels_.size());
+        if (predicts_light()) {
+            nearby_.resize(2 * pixels_.size());
+            trace_round(std::vector<std::uint32_t>(pixels_.size(), 1));
+            predict_by_nearby_light();
+        }
         trace_round(std::vector<std::uint32_t>(pixels_.size(), least));
         has_all_pixels_ = true;
-        if (plan_.hybrid && plan_.start.camera && predicts_light() && !stopped()) add_first_hits();
+        if (predicts_light() && !stopped()) add_first_hits();
         if (!is_adaptive || most <= least) return;
         if (plan_.hybrid && monitor_.on_picture && !is_over()) monitor_.on_picture(result());
         const std::vector<double> needed = needed_by_pixels();
@@ -247,10 +253,37 @@ class PathPicture {
         return has_traced;
     }
 
-    /// Whether the solution predicts the light of the picture. A solution includes the light of suns. In a picture
-    /// without it, the edges of their shadows would add noise.
+    /// Whether the light of first hits is predicted. A solution includes the light of suns. In a picture without it,
+    /// the edges of their shadows would add noise.
     bool predicts_light() const {
-        return plan_.has_direct_sunlight || plan_.sources().useful_rays(SourceKind::suns, 1) == 0;
+        const bool has_same_suns = plan_.has_direct_sunlight || plan_.sources().useful_rays(SourceKind::suns, 1) == 0;
+        return plan_.hybrid && plan_.start.camera && has_same_suns;
+    }
+
+    /// Keeps the first sample of each half of a pixel.
+    void keep_nearby(const SampleBatch& batch) {
+        for (std::size_t h = 0; h < 2; ++h) {
+            const FirstHit& first = batch.first[h];
+            const double per_radiance = plan_.shows_irradiance() ? std::numbers::pi : 1;
+            const RgbD reflected = (batch.halves[h].direct + batch.halves[h].indirect) / per_radiance;
+            const bool shows_surface = first.distance > 0 && mean_channel(first.albedo) > 0;
+            if (!shows_surface || !is_finite(Rgb(reflected))) continue;
+            NearbyLight::Sample& sample = nearby_[2 * batch.pixel + h];
+            sample.position = V3f(first.position);
+            sample.normal = V3f(first.normal);
+            sample.spacing = static_cast<float>(first.distance) * plan_.start.pixel_angle + plan_.start.pixel_size;
+            sample.reflectance = Rgb(first.albedo);
+            sample.reflected = Rgb(reflected);
+        }
+    }
+
+    /// Predicts the light of all first hits, also those of the first samples, from the first samples around.
+    void predict_by_nearby_light() {
+        if (stopped()) return;
+        shared_.predict_by(NearbyLight(options_.width, options_.height, std::move(nearby_)));
+        nearby_ = {};
+        trace_first_hits([](std::uint32_t i) { return SampleBatch{.pixel = i, .tracing = Tracing::first_hits}; },
+                         [this](const SampleBatch& batch) { pixels_[batch.pixel].replace_prediction(batch); });
     }
 
     /// Traces camera rays alone at edges and textures, even if the time is over: they are cheap.
@@ -321,6 +354,7 @@ class PathPicture {
         for (const SampleBatch& batch : chunk) {
             if (!batch.done) continue;
             pixels_[batch.pixel].add(batch, error_source());
+            if (!nearby_.empty()) keep_nearby(batch);
             samples_done_ += batch.half_size;
         }
         chunk.clear();
@@ -344,8 +378,9 @@ class PathPicture {
     SharedBatches& shared_;
     bool has_all_pixels_ = false;
     std::vector<PixelStatistics> pixels_;
-    const std::vector<std::uint32_t> order_;  // in which pixels are traced
-    double expected_samples_ = 0;             // expected number of samples of each half, summed over the pixels
+    std::vector<NearbyLight::Sample> nearby_;  // first samples, two of each pixel; empty once they predict light
+    const std::vector<std::uint32_t> order_;   // in which pixels are traced
+    double expected_samples_ = 0;              // expected number of samples of each half, summed over the pixels
     std::int64_t samples_done_ = 0;
     double error_ = std::numeric_limits<double>::infinity();  // last computed error of the picture
     std::int64_t samples_of_error_ = 0;                       // samples_done_ when error_ was computed

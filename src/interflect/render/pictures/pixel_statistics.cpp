@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -126,7 +127,7 @@ void PixelStatistics::Spread::add(const PathLight& light) {
 
 void PixelStatistics::add(const SampleBatch& b, ErrorSource source) {
     samples_ += b.half_size;
-    first_sum_ += b.first;
+    for (const FirstHit& first : b.first) first_sum_ += first;
     for (std::size_t h = 0; h < 2; ++h) sums_[h] += b.halves[h];
     if (source == ErrorSource::halves) {
         spread_ = {};
@@ -140,9 +141,17 @@ void PixelStatistics::add(const SampleBatch& b, ErrorSource source) {
     }
 }
 
+void PixelStatistics::replace_prediction(const SampleBatch& b) {
+    assert(b.half_size == samples_);
+    for (std::size_t h = 0; h < 2; ++h) {
+        sums_[h].predicted = b.halves[h].predicted;
+        sums_[h].square_of_first_hit = b.halves[h].square_of_first_hit;
+    }
+}
+
 void PixelStatistics::add_first_hits(const SampleBatch& b) {
     number_of_first_hits_ = b.half_size;
-    first_sum_ += b.first;
+    for (const FirstHit& first : b.first) first_sum_ += first;
     for (std::size_t h = 0; h < 2; ++h)
         first_hits_[h] = {Rgb(b.halves[h].emitted / static_cast<double>(b.half_size)),
                           Rgb(b.halves[h].predicted / static_cast<double>(b.half_size))};

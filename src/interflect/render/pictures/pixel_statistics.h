@@ -26,6 +26,8 @@ class PixelStatistics {
   public:
     /// Adds a batch. @param source  Must be equal for all batches.
     void add(const SampleBatch& batch, ErrorSource source);
+    /// Replaces the predictions of all samples. @param batch  First hits of the same camera rays.
+    void replace_prediction(const SampleBatch& batch);
     /// Adds the batch of first hits, which is independent of all others; only for ErrorSource::halves.
     void add_first_hits(const SampleBatch& batch);
 

@@ -36,7 +36,8 @@ struct PathLight {
     RgbD direct{0, 0, 0};     ///< Light that is reflected once.
     RgbD indirect{0, 0, 0};   ///< Light that is reflected more than once.
     double record_error = 0;  ///< Standard error of recorded light, mean channel; common to all paths.
-    /// Prediction of direct + indirect light by the first hit alone, from the elements of a solution; 0 without one.
+    /// Prediction of direct + indirect light by the first hit alone, from NearbyLight and the elements of a solution; 0
+    /// without one.
     RgbD predicted{0, 0, 0};
     /// Squares of the emitted and predicted light of each first hit, mean channel. Their spread shows edges, where
     /// pixels need more first hits; no stated error depends on it. If mirrors and panes split a sample, each path is
@@ -75,7 +76,7 @@ struct SampleBatch {
     Tracing tracing = Tracing::paths;
     bool done = false;
     std::array<PathLight, 2> halves{};
-    FirstHit first{};  ///< Sum of the first hits of all paths.
+    std::array<FirstHit, 2> first{};  ///< Sums of the first hits of each half.
 };
 
 struct RayCounts {

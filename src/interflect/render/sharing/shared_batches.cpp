@@ -1,6 +1,7 @@
 #include "interflect/render/sharing/shared_batches.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "interflect/base/threads/shared_ranges.h"
@@ -15,7 +16,7 @@ std::size_t SharedBatches::paths_at_once(const PathPlan& plan, const Ranks* rank
 
 RayCounts SharedBatches::trace(std::span<SampleBatch> batches, const std::function<bool()>& is_over, bool is_limited) {
     if (ranks_) {
-        Chunk chunk{batches.size(), light_set_, is_limited};
+        Chunk chunk{.batches = batches.size(), .light_set = light_set_, .is_limited = is_limited};
         broadcast(*ranks_, std::span(&chunk, 1));
         std::vector<Key> keys;
         keys.reserve(batches.size());
@@ -23,6 +24,22 @@ RayCounts SharedBatches::trace(std::span<SampleBatch> batches, const std::functi
         broadcast(*ranks_, std::span(keys));
     }
     return trace_own(batches, is_over);
+}
+
+void SharedBatches::predict_by(NearbyLight nearby) {
+    if (ranks_) {
+        Chunk chunk{.width = nearby.width(), .height = nearby.height()};
+        broadcast(*ranks_, std::span(&chunk, 1));
+        std::vector<NearbyLight::Sample> samples = nearby.samples();
+        broadcast(*ranks_, std::span(samples));
+    }
+    nearby_.emplace(std::move(nearby));
+}
+
+void SharedBatches::receive_prediction(int width, int height) {
+    std::vector<NearbyLight::Sample> samples(2 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    broadcast(*ranks_, std::span(samples));
+    nearby_.emplace(width, height, std::move(samples));
 }
 
 std::int64_t SharedBatches::renew_virtual_lights() {
@@ -44,6 +61,10 @@ void SharedBatches::help(const StopRequest& time_left) {
     for (;;) {
         Chunk chunk;
         broadcast(*ranks_, std::span(&chunk, 1));
+        if (chunk.width > 0) {
+            receive_prediction(chunk.width, chunk.height);
+            continue;
+        }
         if (chunk.batches == 0) break;
         keys.resize(chunk.batches);
         broadcast(*ranks_, std::span(keys));
@@ -66,7 +87,7 @@ RayCounts SharedBatches::trace_own(std::span<SampleBatch> batches, const std::fu
     parallel_for_own_ranges(ranks_, batches.size(), per_tile, [&](std::size_t begin, std::size_t end) {
         if (is_over()) return;
         PathIntegrator& integrator = integrators_.local();
-        integrator.trace(batches.subspan(begin, end - begin));
+        integrator.trace(batches.subspan(begin, end - begin), nearby_ ? &*nearby_ : nullptr);
         counts[begin / per_tile] = integrator.counts();
     });
     collect_ranges(ranks_, batches, per_tile, Destination::first_rank);

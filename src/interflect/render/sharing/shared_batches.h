@@ -3,12 +3,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "interflect/base/threads/parallel.h"
 #include "interflect/base/threads/stop_request.h"
 #include "interflect/ranks.h"
 #include "interflect/render/paths/path_integrator.h"
+#include "interflect/render/rays/nearby_light.h"
 #include "interflect/render/rays/path_plan.h"
 #include "interflect/render/rays/sample_batch.h"
 #include "interflect/render/reflections/virtual_lights.h"
@@ -37,6 +39,8 @@ class SharedBatches {
     /// @param is_over     If it returns true, the remaining tiles of this process are omitted. Called once per tile.
     /// @param is_limited  Whether the other ranks omit tiles after PictureOptions::time.
     RayCounts trace(std::span<SampleBatch> batches, const std::function<bool()>& is_over, bool is_limited);
+    /// Predicts the light of first hits by the samples around them, in later calls of trace().
+    void predict_by(NearbyLight nearby);
     /// Replaces the virtual lights for later batches. Returns the number of rays for this; 0 without virtual lights.
     std::int64_t renew_virtual_lights();
     /// Ends help() in the other ranks, and waits until all of them have finished.
@@ -55,16 +59,19 @@ class SharedBatches {
     };
     /// Header of the message to the other ranks.
     struct Chunk {
-        std::size_t batches = 0;         // number of batches; 0: the picture is finished
+        std::size_t batches = 0;         // number of batches; 0: the picture is finished, unless a NearbyLight follows
+        int width = 0, height = 0;       // size of the picture if NearbyLight follows in place of batches, else 0
         std::uint32_t light_set = none;  // number of the set of virtual lights
         bool is_limited = false;
     };
+    void receive_prediction(int width, int height);
     RayCounts trace_own(std::span<SampleBatch> batches, const std::function<bool()>& is_over);
 
     VirtualLights* virtual_lights_;
     Ranks* ranks_;
     PerThread<PathIntegrator> integrators_;
     std::uint32_t light_set_ = none;
+    std::optional<NearbyLight> nearby_;
 };
 
 }  // namespace interflect::detail
