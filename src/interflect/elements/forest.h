@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "interflect/base/memory/stable_array.h"
@@ -15,6 +16,8 @@
 namespace interflect::detail {
 
 inline constexpr std::size_t elements_per_task = 1 << 13;
+/// Number of elements from which on memory is saved by more work for each element.
+inline constexpr std::size_t many_elements = std::size_t{1} << 20;
 
 /// Quadtrees over a scene's patches. Element i < patch_count() is the root of patch i; blocks of four siblings follow.
 /// Threads may subdivide while others traverse; put_in_order() then makes indices independent of threads.
@@ -150,6 +153,25 @@ template <class T>
 void inherit(const ElementForest& forest, std::uint32_t first, std::vector<T>& values) {
     values.resize(forest.size());
     for (ElementIndex e(first); e < forest.size(); ++e) values[e] = values[forest.parent(e)];
+}
+
+/// Removes the values of inner elements.
+template <class T>
+void keep_leaves(const ElementForest& forest, std::vector<T>& values) {
+    std::size_t count = 0;
+    for (ElementIndex e{0}; e < values.size(); ++e)
+        if (forest.is_leaf(e)) values[count++] = values[e];
+    values.resize(count);
+    values.shrink_to_fit();
+}
+/// Reverses keep_leaves() for a forest that then had `elements` elements. Values of inner and new elements are 0.
+template <class T>
+void expand_leaves(const ElementForest& forest, std::uint32_t elements, std::vector<T>& values) {
+    std::vector<T> expanded(forest.size(), T(0));
+    auto next = values.begin();
+    for (ElementIndex e{0}; e < elements; ++e)
+        if (forest.first_child(e) >= elements) expanded[e] = *next++;
+    values = std::move(expanded);
 }
 
 /// Adds each parent's value per area to its children.

@@ -29,12 +29,12 @@ void start_time_limit(Work& work, const Limits& limits) {
 /// @throws Interrupted
 template <class Step>
 void run_or_restore(Run& run, const Step& step) {
-    const IterationStart start(run.state);
+    IterationStart start(run.state);
     try {
         step();
     } catch (const Interrupted&) {
         if (run.state.light.options().method.is_stochastic) {
-            start.restore(run.state);
+            start.restore();
             run.method->discard();
         }
         throw;

@@ -26,6 +26,9 @@ class Table {
     std::size_t terms() const { return terms_; }
     std::size_t elements() const { return sums_.size() / terms_; }
     std::int64_t& at(std::size_t e, std::size_t t) { return sums_[e * terms_ + t]; }
+    bool is_zero(std::size_t e) const {
+        return std::all_of(&sums_[e * terms_], &sums_[e * terms_] + terms_, [](std::int64_t sum) { return sum == 0; });
+    }
     void read(std::size_t e, std::span<std::int64_t> row) const {
         std::copy_n(&sums_[e * terms_], terms_, row.begin());
     }
@@ -64,8 +67,10 @@ Table unpacked(const PackedSums& packed, std::size_t elements, std::size_t terms
 }
 
 PackedSums pack(const Table& table) {
-    return {0, table.elements(), table.terms(),
-            [&](std::size_t e, std::span<std::int64_t> row) { table.read(e, row); }};
+    return {0, table.elements(), table.terms(), [&](std::size_t e, std::span<std::int64_t> row) {
+                table.read(e, row);
+                return true;
+            }};
 }
 
 TEST(PackedSums, AreUnpackedAsTheyWere) {

@@ -59,7 +59,7 @@ struct Setting {
         for (const ElementIndex leaf : state.light.forest->leaves()) state.light.forest->subdivide(leaf);
         state.light.forest->put_in_order(before);
         grow_with_forest(state, before);
-        state.sampling.streams.used.resize(state.light.forest->size(), 0);
+        state.sampling.streams.used.resize(state.light.forest->size());
     }
 
     /// Simulates an iteration. Siblings differ from their parent by the signal and by noise. Before the siblings' mean
@@ -209,12 +209,7 @@ TEST(MergeDetails, KeepsTheMeansOfParentsWhateverTheHistoryOfTheirChildren) {
     Setting s(2, 2);
     std::uniform_real_distribution<float> history(0, 1000);
     for (int k = 0; k < 5; ++k) {
-        for (float& h : s.state.light.history) h = history(s.random);
-        for (ElementIndex e{0}; e < s.state.light.forest->size(); ++e)
-            if (e >= s.state.light.forest->patch_count() && (e - s.state.light.forest->patch_count()) % 4 != 0)
-                s.state.light.history[e] =
-                    s.state.light
-                        .history[e - (e - s.state.light.forest->patch_count()) % 4];  // siblings share a history
+        s.state.light.history.change([&](ElementIndex, float) { return history(s.random); });
         const Estimate fresh = s.iteration(100, {1, 1, 1}, 2, no_signal);
         merge_independent(s.state.light, s.state.light.solution.irradiance, fresh.irradiance, {.plan = {.rays = 100}});
     }
@@ -235,7 +230,7 @@ std::array<std::vector<double>, 4> lone_bright_siblings(float before, int merges
     for (int trial = 0; trial < 2000; ++trial) {
         std::vector<Rgb>& mean = s.state.light.solution.irradiance;
         mean.assign(mean.size(), Rgb(1));  // inherited; the truth is 4 for the first sibling, 0 for the others
-        for (ElementIndex e{0}; e < mean.size(); ++e) s.state.light.history[e] = e < 6 ? before : 0.0f;
+        for (ElementIndex e{0}; e < mean.size(); ++e) s.state.light.history.set(e, e < 6 ? before : 0.0f);
         s.state.light.noise = NoiseModel(mean.size());
         for (int k = 0; k < merges; ++k) {
             Estimate fresh{std::vector<Rgb>(mean.size(), Rgb(0)), std::vector<float>(mean.size(), 0.0f)};
@@ -376,7 +371,7 @@ TEST(VarianceRefinement, KeepsItsLimitsAndLeavesWhatIsMeasuredTooLittle) {
     refine_by_variance(s.state);
     EXPECT_EQ(s.state.light.forest->size(), before + 20);
     s.options.refinement.max_elements = 1 << 20;
-    for (float& h : s.state.light.history) h = 0;
+    s.state.light.history.assign(s.state.light.history.size(), 0);
     const std::uint32_t then = s.state.light.forest->size();
     refine_by_variance(s.state);
     EXPECT_EQ(s.state.light.forest->size(), then) << "nothing was measured";

@@ -30,5 +30,24 @@ TEST(ContributionSums, GivesEachElementThePartsOfContributionsThatArriveThere) {
     EXPECT_EQ(sums.take(4), Contribution{}) << "taken";
 }
 
+TEST(ContributionSums, HaveTheSameSumsWhereManyElementsArePackedAndOnlySomeReceive) {
+    const auto receives = [](std::uint32_t e) { return e % 3 == 1; };
+    ContributionSums sums(many_elements);
+    sums.begin_step(many_elements, /*has_importance=*/false, RankedBits(many_elements, receives));
+    ContributionSums::ScatterBuffer buffer(sums);
+    constexpr std::int64_t large = std::int64_t{1} << 60;
+    const std::uint32_t a = buffer.add_payload({large, 10, 100, 5}), b = buffer.add_payload({2, 20, large, 7});
+    for (const std::uint32_t payload : {a, b, b}) buffer.add(ElementIndex(3001), payload, Terms::power);
+    buffer.add(ElementIndex(1), b, Terms::power);
+    buffer.flush_all();
+    EXPECT_TRUE(sums.is_zero(3000)) << "does not receive";
+    EXPECT_TRUE(sums.is_zero(30'004));
+    EXPECT_FALSE(sums.is_zero(1));
+    EXPECT_EQ(sums.take(3001), (Contribution{large + 4, 50, 2 * large + 100, 19, 0}));
+    EXPECT_EQ(sums.take(1), (Contribution{2, 20, large, 7, 0}));
+    EXPECT_EQ(sums.take(3000), Contribution{});
+    EXPECT_EQ(sums.take(3001), Contribution{}) << "taken";
+}
+
 }  // namespace
 }  // namespace interflect

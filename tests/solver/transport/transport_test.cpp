@@ -237,7 +237,7 @@ TEST(Transport, AdvancesTheStreamsByWhatItShot) {
     for (const std::int64_t steps : {1, 2, 3}) {
         room.receive(streams, room.refining_step(steps == 1 ? 1.0f : 0.01f));
         std::uint64_t used = 0;
-        for (const std::uint64_t u : streams.used) used += u;
+        for (std::size_t e = 0; e < streams.used.size(); ++e) used += streams.used[e];
         EXPECT_EQ(used, static_cast<std::uint64_t>(steps * rays));
         EXPECT_EQ(streams.allocations, static_cast<std::uint64_t>(steps));
     }

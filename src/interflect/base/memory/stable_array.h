@@ -18,14 +18,15 @@ class StableArray {
     static_assert(std::is_trivially_copyable_v<T>);
 
   public:
+    /// @param large_pages  Whether to prefer pages of 2 MiB. Pages of 4 KiB suit arrays with few entries in use.
     /// @throws AddressSpaceError
-    explicit StableArray(std::size_t capacity = 0) : capacity_(capacity) {
+    explicit StableArray(std::size_t capacity = 0, bool large_pages = true) : capacity_(capacity) {
         if (capacity == 0) return;
         void* memory =
             ::mmap(nullptr, bytes(), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (memory == MAP_FAILED) throw AddressSpaceError(bytes());
         data_ = static_cast<T*>(memory);
-        ::madvise(memory, bytes(), MADV_HUGEPAGE);  // fewer TLB misses; may fail
+        ::madvise(memory, bytes(), large_pages ? MADV_HUGEPAGE : MADV_NOHUGEPAGE);  // fewer TLB misses; may fail
     }
     ~StableArray() {
         if (data_) ::munmap(data_, bytes());

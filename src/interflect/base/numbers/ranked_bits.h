@@ -1,9 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "interflect/base/threads/parallel.h"
 
 namespace interflect::detail {
 
@@ -15,12 +19,20 @@ class RankedBits {
     template <class Index>
     RankedBits(std::size_t bound, const std::vector<Index>& members) : words_(bound / 64 + 1) {
         for (const std::uint32_t member : members) words_[member / 64].bits |= std::uint64_t{1} << member % 64;
-        std::uint32_t before = 0;
-        for (Word& word : words_) {
-            word.before = before;
-            before += static_cast<std::uint32_t>(std::popcount(word.bits));
-        }
+        set_ranks();
     }
+    /// Contains the numbers below `bound` for which is_member(number) is true. Several threads call it.
+    template <class IsMember>
+    requires std::predicate<IsMember, std::uint32_t> RankedBits(std::size_t bound, const IsMember& is_member)
+        : words_(bound / 64 + 1) {
+        parallel_for_indices(words_.size(), [&](std::size_t i) {
+            for (std::size_t number = 64 * i; number < std::min(bound, 64 * i + 64); ++number)
+                words_[i].bits |= std::uint64_t{is_member(static_cast<std::uint32_t>(number))} << number % 64;
+        });
+        set_ranks();
+    }
+
+    bool empty() const { return words_.empty(); }
 
     bool operator[](std::uint32_t number) const {
         return number / 64 < words_.size() && (words_[number / 64].bits >> number % 64 & 1u);
@@ -38,6 +50,14 @@ class RankedBits {
         std::uint64_t bits = 0;
         std::uint32_t before = 0;  // members in the preceding words
     };
+    void set_ranks() {
+        std::uint32_t before = 0;
+        for (Word& word : words_) {
+            word.before = before;
+            before += static_cast<std::uint32_t>(std::popcount(word.bits));
+        }
+    }
+
     std::vector<Word> words_;
 };
 

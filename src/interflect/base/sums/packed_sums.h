@@ -20,7 +20,8 @@ class PackedSums {
     /// Elements per task. The bytes begin with the offset of each task.
     static constexpr std::size_t task_elements = std::size_t{1} << 14;
 
-    /// @param row  row(element, terms) fills the terms of an element in [begin, end). Called by several threads.
+    /// @param row  row(element, terms) fills the terms of an element in [begin, end), or returns false if all are 0.
+    /// Called by several threads.
     template <class Row>
     PackedSums(std::size_t begin, std::size_t end, std::size_t terms, const Row& row) {
         std::vector<Ranks::Bytes> of_tasks(tasks_of(end - begin));
@@ -73,7 +74,7 @@ class PackedSums {
             std::ranges::fill(used, 0);
             for (std::size_t i = 0; i < count; ++i) {
                 const std::span<std::int64_t> sums(&rows[i * terms], terms);
-                row(first + i, sums);
+                if (!row(first + i, sums)) continue;
                 std::uint64_t any = 0;
                 for (std::size_t t = 0; t < terms; ++t) {
                     any |= static_cast<std::uint64_t>(sums[t]);
@@ -82,7 +83,8 @@ class PackedSums {
                 present |= std::uint64_t{any != 0} << i;
             }
             // Each term is written as eight bytes; the next term overwrites the unused ones.
-            bytes.resize(size + sizeof(present) + terms + (count * terms + 1) * sizeof(std::int64_t));
+            const auto nonzero = static_cast<std::size_t>(std::popcount(present));
+            bytes.resize(size + sizeof(present) + terms + (nonzero * terms + 1) * sizeof(std::int64_t));
             std::byte* at = bytes.data() + size;
             std::memcpy(at, &present, sizeof(present)), at += sizeof(present);
             if (present != 0)

@@ -15,39 +15,66 @@
 
 namespace interflect::detail {
 
-/// Adds the integer sums of all ranks. Rank r adds the r-th part of the elements and sends the results to the others.
-/// @param sums  Has terms(); read(element, row); take(element, row), which also zeroes; add(element, row). A row has
-/// terms() numbers. Several threads call these for different elements.
-template <class Sums>
-void add_over_ranks(Ranks& ranks, std::size_t elements, Sums& sums) {
-    using Row = std::span<std::int64_t>;
-    using ConstRow = std::span<const std::int64_t>;
-    const auto count = static_cast<std::size_t>(ranks.count()), own = static_cast<std::size_t>(ranks.rank());
-    const auto begin_of = [&](std::size_t r) { return elements * r / count; };
-    const auto add = [&](std::size_t e, ConstRow row) { sums.add(e, row); };
+/// A range of elements [begin, end).
+struct ElementRange {
+    std::size_t begin = 0, end = 0;
+};
+/// Returns the part of the elements that a rank adds.
+inline ElementRange part_of_rank(const Ranks& ranks, std::size_t elements, std::size_t rank) {
+    const auto count = static_cast<std::size_t>(ranks.count());
+    return {elements * rank / count, elements * (rank + 1) / count};
+}
 
-    // Send each other rank the sums of its part of the elements
+/// Adds the integer sums of all ranks in the rank to which an element belongs. The others then have 0.
+/// @param sums  Has terms(); is_zero(element); read(element, row); take(element, row), which also zeroes;
+/// add(element, row). A row has terms() numbers. Several threads call these for different elements.
+template <class Sums>
+void add_in_parts(Ranks& ranks, std::size_t elements, Sums& sums) {
+    const auto count = static_cast<std::size_t>(ranks.count()), own = static_cast<std::size_t>(ranks.rank());
     std::vector<Ranks::Bytes> parts(count);
-    for (std::size_t r = 0; r < count; ++r)
-        if (r != own)
-            parts[r] = PackedSums(begin_of(r), begin_of(r + 1), sums.terms(), [&](std::size_t e, Row row) {
-                           sums.take(e, row);
-                       }).bytes();
-    // Add the received sums to the own part
+    for (std::size_t r = 0; r < count; ++r) {
+        if (r == own) continue;
+        const auto [begin, end] = part_of_rank(ranks, elements, r);
+        parts[r] = PackedSums(begin, end, sums.terms(), [&](std::size_t e, std::span<std::int64_t> row) {
+                       if (sums.is_zero(e)) return false;
+                       sums.take(e, row);
+                       return true;
+                   }).bytes();
+    }
     std::vector<std::span<const std::byte>> of_others;
     const std::vector<Ranks::Bytes> received = ranks.exchange(parts);
     for (std::size_t r = 0; r < count; ++r)
         if (r != own) of_others.emplace_back(received[r]);
-    PackedSums::unpack(of_others, begin_of(own), begin_of(own + 1), sums.terms(), add);
+    const auto [begin, end] = part_of_rank(ranks, elements, own);
+    PackedSums::unpack(of_others, begin, end, sums.terms(),
+                       [&](std::size_t e, std::span<const std::int64_t> row) { sums.add(e, row); });
+}
 
-    // Exchange the results of all parts
-    const PackedSums result(begin_of(own), begin_of(own + 1), sums.terms(),
-                            [&](std::size_t e, Row row) { sums.read(e, row); });
-    const std::vector<Ranks::Bytes> results = ranks.gather(result.bytes());
-    for (std::size_t r = 0; r < count; ++r) {
-        const std::span<const std::byte> part = results[r];
-        if (r != own) PackedSums::unpack(std::span(&part, 1), begin_of(r), begin_of(r + 1), sums.terms(), add);
+/// Adds the values of each rank's part in the other ranks. @param values  As in add_in_parts(), without take().
+template <class Values>
+void share_parts(Ranks& ranks, std::size_t elements, Values& values) {
+    const auto own = static_cast<std::size_t>(ranks.rank());
+    const auto [own_begin, own_end] = part_of_rank(ranks, elements, own);
+    const PackedSums packed(own_begin, own_end, values.terms(), [&](std::size_t e, std::span<std::int64_t> row) {
+        if (values.is_zero(e)) return false;
+        values.read(e, row);
+        return true;
+    });
+    const std::vector<Ranks::Bytes> of_ranks = ranks.gather(packed.bytes());
+    for (std::size_t r = 0; r < of_ranks.size(); ++r) {
+        if (r == own) continue;
+        const std::span<const std::byte> part = of_ranks[r];
+        const auto [begin, end] = part_of_rank(ranks, elements, r);
+        PackedSums::unpack(std::span(&part, 1), begin, end, values.terms(),
+                           [&](std::size_t e, std::span<const std::int64_t> row) { values.add(e, row); });
     }
+}
+
+/// Adds the integer sums of all ranks in each of them. @param sums  As in add_in_parts().
+template <class Sums>
+void add_over_ranks(Ranks& ranks, std::size_t elements, Sums& sums) {
+    add_in_parts(ranks, elements, sums);
+    share_parts(ranks, elements, sums);
 }
 
 /// Returns the values of all ranks, in their order.
@@ -55,12 +82,9 @@ template <class T>
 std::vector<T> gather_over_ranks(Ranks& ranks, std::span<const T> values) {
     std::vector<T> all;
     for (const Ranks::Bytes& bytes : ranks.gather(std::as_bytes(values))) {
-        all.reserve(all.size() + bytes.size() / sizeof(T));
-        for (std::size_t at = 0; at < bytes.size(); at += sizeof(T)) {
-            std::array<std::byte, sizeof(T)> of_value;
-            std::memcpy(of_value.data(), &bytes[at], sizeof(T));
-            all.push_back(std::bit_cast<T>(of_value));
-        }
+        const std::size_t before = all.size();
+        all.resize(before + bytes.size() / sizeof(T));
+        if (!bytes.empty()) std::memcpy(static_cast<void*>(&all[before]), bytes.data(), bytes.size());
     }
     return all;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
@@ -10,11 +11,14 @@
 #include <vector>
 
 #include "interflect/base/memory/stable_array.h"
+#include "interflect/base/numbers/packed_integers.h"
+#include "interflect/base/numbers/ranked_bits.h"
+#include "interflect/elements/forest.h"
 
 namespace interflect::detail {
 
 /// Terms of a contribution: three channels of power, squared luminance, importance.
-using Contribution = std::array<std::int64_t, 5>;
+using Contribution = PackedIntegers::Row;
 inline constexpr std::size_t power_terms = 4, importance_term = 4;
 
 /// Sums of contributions by element. They are integers, so they do not depend on the order of additions. Each thread
@@ -24,55 +28,74 @@ class ContributionSums {
   public:
     /// Address space per element [bytes].
     static constexpr std::size_t reserved_per_element(std::size_t groups) {
-        return sizeof(Contribution) + 3 * groups * sizeof(std::int64_t);
+        return PackedIntegers::reserved_per_row + 3 * groups * sizeof(std::int64_t);
     }
-
     explicit ContributionSums(std::size_t capacity, std::size_t groups = 0)
         : sums_(capacity), group_terms_(3 * groups), group_sums_(capacity * group_terms_) {}
 
-    void begin_step(std::size_t elements);
+    /// @param has_importance  Whether any contribution has importance.
+    /// @param receivers       Elements that may receive contributions; empty: all, also those that the step creates.
+    void begin_step(std::size_t elements, bool has_importance = true, RankedBits receivers = {}) {
+        elements_ = elements;
+        sums_.set_layout(has_importance ? importance_term + 1 : power_terms, elements >= many_elements);
+        receivers_ = std::move(receivers);
+        all_receive_ = receivers_.empty();
+        region_shift_ = static_cast<int>(std::bit_width(rows_before(elements) / regions));
+    }
     void clear(std::size_t elements) {
-        for (std::size_t e = 0; e < elements; ++e) clear_one(e);
+        for (std::size_t e = 0; e < elements; ++e)
+            if (receives(e)) clear_one(e);
     }
     /// Returns the number of terms for read() and add(): those of a contribution, then the power of all groups.
-    std::size_t terms() const { return Contribution().size() + group_terms_; }
+    std::size_t terms() const { return sums_.terms() + group_terms_; }
     void read(std::size_t element, std::span<std::int64_t> terms) const {
-        const Contribution& sum = sums_[element];
-        std::copy(sum.begin(), sum.end(), terms.begin());
-        for (std::size_t i = 0; i < group_terms_; ++i) terms[sum.size() + i] = group_sums_[element * group_terms_ + i];
+        if (!receives(element)) {
+            std::ranges::fill(terms, 0);
+            return;
+        }
+        const Contribution sum = sums_.get(row(element));
+        const auto groups = std::copy_n(sum.begin(), sums_.terms(), terms.begin());
+        for (std::size_t i = 0; i < group_terms_; ++i)
+            groups[static_cast<std::ptrdiff_t>(i)] = group_sums_[row(element) * group_terms_ + i];
     }
     void add(std::size_t element, std::span<const std::int64_t> terms) {
-        Contribution& sum = sums_[element];
-        for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += terms[c];
-        for (std::size_t i = 0; i < group_terms_; ++i) group_sums_[element * group_terms_ + i] += terms[sum.size() + i];
+        Contribution sum{};
+        std::copy_n(terms.begin(), sums_.terms(), sum.begin());
+        sums_.add(row(element), sum);
+        for (std::size_t i = 0; i < group_terms_; ++i)
+            group_sums_[row(element) * group_terms_ + i] += terms[sums_.terms() + i];
     }
     void clear_one(std::size_t element) {
-        sums_[element] = {};
-        for (std::size_t i = 0; i < group_terms_; ++i) group_sums_[element * group_terms_ + i] = 0;
+        if (!receives(element)) return;
+        sums_.clear(row(element));
+        for (std::size_t i = 0; i < group_terms_; ++i) group_sums_[row(element) * group_terms_ + i] = 0;
     }
-    bool is_zero(std::size_t element) const {
-        const Contribution& sum = sums_[element];  // the comparison of arrays would call memcmp()
-        return (sum[0] | sum[1] | sum[2] | sum[3] | sum[4]) == 0;
+    bool is_zero(std::size_t element) const { return !receives(element) || sums_.is_zero(row(element)); }
+    /// Whether the sums of all elements are stored in the simplest way; is_simple_zero() then equals is_zero().
+    bool are_simple() const { return all_receive_ && !sums_.is_packed(); }
+    bool is_simple_zero(std::size_t element) const { return sums_.is_unpacked_zero(element); }
+    Contribution take(std::size_t element) {
+        if (!receives(element)) return {};
+        return sums_.take(row(element));
     }
-    Contribution take(std::size_t element) { return std::exchange(sums_[element], {}); }
     std::array<std::int64_t, 3> take(std::size_t element, std::size_t group) {
         std::array<std::int64_t, 3> power{};
+        if (!receives(element)) return power;
         for (std::size_t c = 0; c < 3; ++c) power[c] = std::exchange(group_sum(element, group)[c], 0);
         return power;
     }
     std::size_t groups() const { return group_terms_ / 3; }
-    void add(std::size_t element, const Contribution& contribution) {
-        for (std::size_t c = 0; c < contribution.size(); ++c) sums_[element][c] += contribution[c];
-    }
+    void add(std::size_t element, const Contribution& contribution) { sums_.add(row(element), contribution); }
     void add(std::size_t element, std::size_t group, const std::array<std::int64_t, 3>& power) {
         for (std::size_t c = 0; c < 3; ++c) group_sum(element, group)[c] += power[c];
     }
-    /// Releases the memory of these elements. Small forests keep it, because clearing new pages is slower than the
-    /// additions.
+    /// Releases the memory of these elements, whose sums are 0. Small forests keep it, because clearing new pages is
+    /// slower than the additions.
     void release(std::size_t begin, std::size_t end) {
-        if (elements_ <= max_kept) return;
-        sums_.release(begin, end);
-        if (group_terms_ > 0) group_sums_.release(begin * group_terms_, end * group_terms_);
+        if (elements_ < many_elements) return;
+        const std::size_t first = rows_before(begin), last = rows_before(end);
+        sums_.release(first, last);
+        if (group_terms_ > 0) group_sums_.release(first * group_terms_, last * group_terms_);
     }
 
     /// The bins of a thread, and the payloads to which their deposits refer.
@@ -93,9 +116,10 @@ class ContributionSums {
 
         enum class Terms { power, importance, both };
         void add(ElementIndex element, std::uint32_t payload, Terms terms) {
-            const std::size_t region = element >> sums_->region_shift_ & (regions - 1);
+            const auto row = static_cast<std::uint32_t>(sums_->row(element));
+            const std::size_t region = row >> sums_->region_shift_ & (regions - 1);
             Bin& bin = bins_[region];
-            bin.deposits[bin.count++] = {element, payload & (max_payloads - 1), terms != Terms::importance,
+            bin.deposits[bin.count++] = {row, payload & (max_payloads - 1), terms != Terms::importance,
                                          terms != Terms::power};
             if (bin.count == bin.deposits.size()) flush(region);
         }
@@ -112,7 +136,7 @@ class ContributionSums {
 
       private:
         struct Deposit {
-            ElementIndex element;
+            std::uint32_t row;
             std::uint32_t payload : 30;
             std::uint32_t power : 1, importance : 1;
         };
@@ -134,16 +158,22 @@ class ContributionSums {
     static constexpr std::uint32_t max_payloads = 1u << 30;  // width of Deposit::payload
     static constexpr std::size_t enough_payloads = 8192;     // a quarter of a second-level cache
 
-    static constexpr std::size_t max_kept = std::size_t{1} << 20;  // largest number of elements whose memory is kept
-
+    bool receives(std::size_t element) const { return all_receive_ || receivers_[static_cast<std::uint32_t>(element)]; }
+    std::size_t rows_before(std::size_t element) const {
+        return all_receive_ ? element : receivers_.rank(static_cast<std::uint32_t>(element));
+    }
+    /// Returns the row of an element that receives contributions.
+    std::size_t row(std::size_t element) const { return rows_before(element); }
     std::int64_t* group_sum(std::size_t element, std::size_t group) {
-        return &group_sums_[element * group_terms_ + 3 * group];
+        return &group_sums_[row(element) * group_terms_ + 3 * group];
     }
 
-    StableArray<Contribution> sums_;
+    PackedIntegers sums_;
     std::size_t group_terms_;
-    StableArray<std::int64_t> group_sums_;  // [element][group][channel]
+    StableArray<std::int64_t> group_sums_;  // [row][group][channel]
     std::size_t elements_ = 0;
+    RankedBits receivers_;  // ranks of its members are their rows; empty: rows are elements
+    bool all_receive_ = true;
     int region_shift_ = 0;
     std::array<std::mutex, regions> region_locks_;
 };

@@ -24,6 +24,7 @@ class FoundImportance {
     // For add_over_ranks():
     std::size_t size() const { return sums_.capacity(); }
     static std::size_t terms() { return 1; }
+    bool is_zero(std::size_t source) const { return sums_[source] == 0; }
     void read(std::size_t source, std::span<std::int64_t> sum) const { sum[0] = sums_[source]; }
     void take(std::size_t source, std::span<std::int64_t> sum) { sum[0] = std::exchange(sums_[source], 0); }
     void add(std::size_t source, std::span<const std::int64_t> sum) { sums_[source] += sum[0]; }

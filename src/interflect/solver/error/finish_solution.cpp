@@ -95,8 +95,10 @@ void finish_solution(SolverState& state) {
     set_errors(ElementIndex(0), forest.patch_count(), 0);
     forest.for_siblings_from_roots(
         [&](ElementIndex first) { set_errors(first, 4, signal_among_siblings(state.light, first)); });
-    state.sampling.streams.used.resize(forest.size(), 0);
-    solution.rays.assign(state.sampling.streams.used.begin(), state.sampling.streams.used.end());
+    Counts& used = state.sampling.streams.used;
+    used.resize(forest.size());
+    solution.rays.resize(forest.size());
+    for (std::size_t e = 0; e < used.size(); ++e) solution.rays[e] = static_cast<float>(used[e]);
 
     // Shrink the differences of siblings, from the patches down to the leaves
     std::vector<Rgb> unreduced = solution.irradiance, reduced = solution.irradiance;

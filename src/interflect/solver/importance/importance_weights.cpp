@@ -115,14 +115,29 @@ ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhood
     return weights;
 }
 
+bool weighs_by_indirect_importance(const Solution& so_far) {
+    return importance_use(so_far) == ImportanceUse::full && !so_far.options.experimental.total_importance &&
+           so_far.options.experimental.beta != 1;
+}
+
+std::vector<float> element_weights(const Solution& so_far, std::span<const float> indirect_importance) {
+    const ImportanceOptions& o = so_far.options.importance;
+    const auto first_new = static_cast<std::uint32_t>(indirect_importance.size());
+    std::vector<float> weights = smoothed_importance(*so_far.forest, Importance(indirect_importance), o.smoothing,
+                                                     o.exponent, indirect_importance.size());
+    if (first_new < so_far.forest->size()) inherit(*so_far.forest, first_new, weights);
+    return weights;
+}
+
 std::vector<float> smoothed_importance(const ElementForest& forest, const Importance& importance, double from_parent,
-                                       double exponent) {
+                                       double exponent, std::size_t elements) {
     const auto share = static_cast<float>(from_parent), power = static_cast<float>(exponent);
-    std::vector<float> weights(forest.size());
+    std::vector<float> weights(elements);
     parallel_for_ranges(weights.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
         for (ElementIndex e(begin); e < end; ++e) weights[e] = importance[e];
     });
     forest.for_siblings_from_roots([&](ElementIndex first) {
+        if (first >= elements) return;
         const float parent = weights[forest.parent(first)];
         for (ElementIndex e = first; e < first + 4; ++e) weights[e] += share * (parent - weights[e]);
     });

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "interflect/elements/forest.h"
@@ -34,9 +36,20 @@ struct ImportanceWeights {
 ImportanceWeights importance_weights(const Solution& so_far, const Neighbourhoods& neighbourhoods,
                                      const Emission& emission = {}, const std::vector<PartImportance>& found = {});
 
+/// Computes the weights of elements again, as importance_weights() has done with this importance of the first
+/// elements. Newer elements have the weights of their parents.
+std::vector<float> element_weights(const Solution& so_far, std::span<const float> indirect_importance);
+/// Returns whether importance_weights() depends on the indirect importance alone, besides luminaires.
+bool weighs_by_indirect_importance(const Solution& so_far);
+
 /// Smooths importance for sampling (docs/method/method.md, One step of transport). The paper uses `from_parent` 0 and
 /// `exponent` 1.
+/// @param elements  Number of elements, which includes the parent of each.
 std::vector<float> smoothed_importance(const ElementForest& forest, const Importance& importance, double from_parent,
-                                       double exponent);
+                                       double exponent, std::size_t elements);
+inline std::vector<float> smoothed_importance(const ElementForest& forest, const Importance& importance,
+                                              double from_parent, double exponent) {
+    return smoothed_importance(forest, importance, from_parent, exponent, forest.size());
+}
 
 }  // namespace interflect::detail

@@ -9,18 +9,23 @@
 namespace interflect::detail {
 
 /// State at the start of an iteration. After restore(), a repeated iteration produces the bits of an uninterrupted run.
+/// Keeps SamplingState::importance_at_start while it exists.
 class IterationStart {
   public:
-    explicit IterationStart(const SolverState& state);
+    /// The state must outlive this.
+    explicit IterationStart(SolverState& state);
+    ~IterationStart();
+    IterationStart(const IterationStart&) = delete;
+    IterationStart& operator=(const IterationStart&) = delete;
     /// Restores the state. Irradiance and its statistics must be unchanged, except for new elements.
-    void restore(SolverState& state) const;
+    void restore();
 
   private:
+    SolverState& state_;
     std::uint32_t elements_;
     SampleStreams streams_;
     std::vector<Imath::Box3f> targets_;
     std::vector<PartImportance> part_importance_;
-    std::vector<float> indirect_importance_;
     std::int64_t power_rays_, importance_rays_, escaped_rays_;
     decltype(Solution::non_finite) non_finite_;
     PayloadHistogram payloads_;

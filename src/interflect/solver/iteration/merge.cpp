@@ -121,11 +121,8 @@ void merge_escaped_power(LightState& light, const RgbD& escaped, const TracedIte
 void update_history(LightState& light, const TracedIteration& iteration) {
     const auto rays = static_cast<float>(iteration.weight),
                inherited = static_cast<float>(light.options().experimental.inherited_weight);
-    parallel_for_ranges(light.history.size(), elements_per_task, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t e = begin; e < end; ++e)
-            light.history[e] = iteration.plan.warms_up
-                                   ? 0.0f
-                                   : (light.history[e] + rays) * (e < iteration.plan.old_elements ? 1.0f : inherited);
+    light.history.change([&](ElementIndex e, float before) {
+        return iteration.plan.warms_up ? 0.0f : (before + rays) * (e < iteration.plan.old_elements ? 1.0f : inherited);
     });
 }
 

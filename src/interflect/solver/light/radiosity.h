@@ -15,11 +15,12 @@ namespace interflect::detail {
 class Radiosity {
   public:
     Radiosity() = default;
-    /// @param emits  If false, B = rho H.
+    /// @param irradiance  May be empty: H = 0.
+    /// @param emits       If false, B = rho H.
     Radiosity(const Materials& materials, std::span<const Rgb> irradiance, bool emits = true)
         : materials_(&materials), irradiance_(irradiance), emits_(emits) {}
 
-    bool empty() const { return irradiance_.empty(); }
+    bool empty() const { return !materials_; }
     bool emits() const { return emits_; }
 
     /// Returns false if B is certainly 0.
@@ -40,6 +41,7 @@ class Radiosity {
     Rgb unchecked(PatchIndex patch, ElementIndex e) const {
         if (!emits_) return materials_->reflectance(patch, e) * irradiance_[e];
         const MeanSurface surface = materials_->surface(patch, e);
+        if (irradiance_.empty()) return surface.exitance;
         return surface.exitance + surface.reflectance * irradiance_[e];
     }
 

@@ -100,15 +100,18 @@ struct Passes::Pass {
     const bool oracle_refines;  ///< Whether the oracle refines the mesh while rays are traced.
     BounceBudget budget;
     ImportanceWeights weights;
+    bool sums_leaves = false;      ///< Whether `sum` has only leaves while rays are traced, to save memory.
+    bool repeats_weights = false;  ///< Whether each bounce computes the weights of elements again, to save memory.
     /// Flag of each element: 1 if its reflected rays start at hit points (StartPoints), else 0. Empty while the oracle
     /// refines.
     std::vector<std::uint8_t> reflecting_where_received = {};
 
-    Estimate sum = {};                                 ///< Light of the traced bounces.
+    Estimate sum = {};                  ///< Light of the traced bounces.
+    std::uint32_t elements_of_sum = 0;  ///< If not 0: `sum` has only the leaves of this number of elements.
     double first_power = 0, first_weighted_power = 0;  ///< Power of the first bounce, plain and weighted by importance.
 
     bool emits = true;              ///< Whether the next bounce is the first, which shoots the emitted power.
-    std::vector<Rgb> unshot = {};   ///< Irradiance that the next bounce reflects.
+    std::vector<Rgb> unshot = {};   ///< Irradiance that the next bounce reflects; empty in the first.
     GroupLight unshot_groups = {};  ///< `unshot` of each light group.
     StartPoints start_points = {};  ///< Points that received `unshot`.
 
@@ -116,6 +119,8 @@ struct Passes::Pass {
     TransportStep make_step(const SolverState& state, RayPlan plan);
     void grow(const ElementForest& forest, std::uint32_t old_elements);
     void add_bounce(Received received, bool keeps_direct);
+    void reduce_sum_to_leaves(const ElementForest& forest);
+    void expand_sum(const ElementForest& forest);
 };
 
 /// Returns the power that a bounce shoots, relative to the first bounce: beta p + (1 - beta) w. The share beta of the
@@ -165,6 +170,21 @@ void Passes::Pass::add_bounce(Received received, bool keeps_direct) {
     start_points = std::move(received.start_points);
     unshot = std::move(received.irradiance);
     unshot_groups = std::move(received.groups);
+}
+
+/// Removes the values of inner elements from the sum, to save memory while rays are traced.
+void Passes::Pass::reduce_sum_to_leaves(const ElementForest& forest) {
+    keep_leaves(forest, sum.irradiance);
+    keep_leaves(forest, sum.variance);
+    elements_of_sum = forest.size();
+}
+
+/// Reverses reduce_sum_to_leaves(). Inner elements are 0 until trace_pass() computes them from their children.
+void Passes::Pass::expand_sum(const ElementForest& forest) {
+    if (elements_of_sum == 0) return;
+    expand_leaves(forest, elements_of_sum, sum.irradiance);
+    expand_leaves(forest, elements_of_sum, sum.variance);
+    elements_of_sum = 0;
 }
 
 void Passes::prepare(SolverState& state) {
@@ -250,8 +270,11 @@ Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_r
     Pass pass{rays, oracle_refines, BounceBudget(rays, total_unshot_, separates_direct),
               importance_weights(state.light.solution, state.sampling.neighbourhoods, state.inputs.emission,
                                  state.sampling.part_importance)};
-    pass.unshot.assign(state.light.forest->size(), Rgb(0));
-    pass.unshot_groups.assign(state.inputs.groups.size(), pass.unshot);
+    pass.sums_leaves = state.light.forest->size() >= many_elements;
+    pass.repeats_weights = state.light.forest->size() >= many_elements &&
+                           weighs_by_indirect_importance(state.light.solution) &&
+                           state.light.solution.indirect_importance == state.sampling.importance_at_start;
+    pass.unshot_groups.assign(state.inputs.groups.size(), std::vector<Rgb>(state.light.forest->size(), Rgb(0)));
     if (!oracle_refines) pass.reflecting_where_received = leaves_reflecting_where_received(state);
 
     // The budget plans the last bounce when few rays or little unshot power are left
@@ -261,10 +284,13 @@ Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_r
 
     Estimate& sum = pass.sum;
     if (sum.irradiance.empty()) sum = zero_estimate(state.inputs, state.light);  // no bounce had power to shoot
-    if (!oracle_refines) {
-        // Rays deposit on leaves only, so compute the inner elements from their children.
+    pass.expand_sum(*state.light.forest);
+    if (!oracle_refines || pass.sums_leaves) {
+        // Compute the inner elements from their children.
         pull(*state.light.forest, sum.irradiance);
         pull_variance(*state.light.forest, sum.variance);
+    }
+    if (!oracle_refines) {  // rays deposit on leaves only
         pull(*state.light.forest, sum.groups);
         pull(*state.light.forest, sum.direct);
     }
@@ -278,8 +304,11 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     const bool carries_importance =
         pass.emits && importance_use(solution) == ImportanceUse::full && !experimental.separate_iterations;
     const Radiosity radiosity(state.inputs.materials, pass.unshot, pass.emits);
+    if (pass.repeats_weights && !pass.emits)
+        pass.weights.elements = element_weights(solution, state.sampling.importance_at_start);
     PowerPlan bounce = plan_power(state.inputs.materials, state.inputs.emission, solution, radiosity, pass.weights,
                                   carries_importance, /*rays=*/0);
+    if (pass.repeats_weights) pass.weights.elements = std::vector<float>();
     solution.non_finite += bounce.non_finite_leaves;
     if (pass.emits) {
         pass.first_power = bounce.power;
@@ -294,8 +323,12 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
     // are expected than started. Derived classes trace other bounces in their own way
     TransportStep step = pass.make_step(state, std::move(bounce.plan));
     const std::uint32_t old_elements = state.light.forest->size();
+    // Views are not needed without importance
+    if (old_elements >= many_elements && !carries_importance) solution.view_importance = std::vector<float>();
     Received received =
         step.completes_by_walks ? run_step(state, std::move(step)) : trace_single_bounce(state, std::move(step));
+    if (solution.view_importance.empty() && !state.sampling.view.empty())
+        set_view_importance(state.light, state.sampling);
     count_rays(state.rays, rays.expected, carries_importance, experimental.alpha);
     state.sampling.payloads += received.payloads;
     if (carries_importance) {
@@ -304,8 +337,10 @@ bool Passes::trace_bounce(SolverState& state, Pass& pass) {
         merge_importance(state.light, state.rays, received.importance, bounce_alone);
     }
     // Add the received light to the sum of all bounces
+    pass.expand_sum(*state.light.forest);
     pass.grow(*state.light.forest, old_elements);
     pass.add_bounce(std::move(received), state.light.options().keep_direct);
+    if (pass.sums_leaves) pass.reduce_sum_to_leaves(*state.light.forest);
     return true;
 }
 

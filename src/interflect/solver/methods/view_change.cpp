@@ -118,7 +118,7 @@ bool ViewChange::is_consistent(const SolverState& state) const {
 
 void scale_history(LightState& light, const std::vector<float>& factor) {
     if (factor.empty()) return;
-    for (ElementIndex e{0}; e < light.history.size(); ++e) light.history[e] *= factor[light.forest->patch(e)];
+    light.history.change([&](ElementIndex e, float rays) { return rays * factor[light.forest->patch(e)]; });
     light.noise.scale_by_patch(*light.forest, factor);
 }
 

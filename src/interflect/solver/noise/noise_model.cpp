@@ -52,7 +52,7 @@ std::array<float, 4> NoiseModel::shares(const ElementForest& forest, std::span<c
 }
 
 void NoiseModel::add(const ElementForest& forest, const Estimate& fresh, std::span<const Rgb> mean,
-                     std::span<const float> history, float rays, const std::function<double(ElementIndex)>& weight) {
+                     const History& history, float rays, const std::function<double(ElementIndex)>& weight) {
     // Compare the differences between the iteration and the mean with the noise of independent rays
     const Spread spread =
         parallel_sum(forest.size(), elements_per_task, Spread(), [&](std::size_t begin, std::size_t end) {

@@ -11,6 +11,7 @@
 #include "interflect/core.h"
 #include "interflect/elements/forest.h"
 #include "interflect/solver/noise/estimate.h"
+#include "interflect/solver/noise/history.h"
 
 namespace interflect::detail {
 
@@ -44,12 +45,12 @@ class NoiseModel {
     /// Adds the differences between an iteration and the mean. Call before the iteration is merged.
     /// @param history  Number of rays in the mean of each element; 0: its difference from the parent is unknown.
     /// @param weight   Weight of the squared error of an element; inner elements have the sum of their leaves.
-    void add(const ElementForest& forest, const Estimate& fresh, std::span<const Rgb> mean,
-             std::span<const float> history, float rays, const std::function<double(ElementIndex)>& weight);
+    void add(const ElementForest& forest, const Estimate& fresh, std::span<const Rgb> mean, const History& history,
+             float rays, const std::function<double(ElementIndex)>& weight);
 
     /// Sets the variance per ray from a mean with known variance, for the elements from `first` on.
     /// @param history  Number of rays in the mean of each element.
-    void set_variance(std::span<const float> variance, std::span<const float> history, std::uint32_t first = 0) {
+    void set_variance(std::span<const float> variance, const History& history, std::uint32_t first = 0) {
         for (std::size_t e = first; e < per_ray_.size(); ++e) per_ray_[e] = history[e] * variance[e];
     }
 

@@ -1,7 +1,5 @@
 #include "interflect/solver/refinement/divide_leaves.h"
 
-#include <algorithm>
-
 #include "interflect/elements/forest.h"
 
 namespace interflect::detail {
@@ -14,7 +12,7 @@ void divide_leaves(SolverState& state, const std::vector<std::uint8_t>& splits) 
     if (forest.size() == before) return;
     forest.put_in_order(before);
     grow_with_forest(state, before);
-    std::fill(state.light.history.begin() + before, state.light.history.end(), 0.0f);
+    for (ElementIndex e(before); e < forest.size(); e += 4) state.light.history.set(e, 0);
 }
 
 }  // namespace interflect::detail

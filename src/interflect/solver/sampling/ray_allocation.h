@@ -12,6 +12,8 @@ namespace interflect::detail {
 /// mean over all values of `offset` is exact.
 class RayAllocation {
   public:
+    static constexpr std::size_t block_sources = 256;
+
     /// @param q       Weights >= 0, not normalised; must outlive this.
     /// @param rays    Number N of rays, > 0.
     /// @param offset  Uniform random number in [0, 1).
@@ -55,7 +57,6 @@ class RayAllocation {
     }
 
   private:
-    static constexpr std::size_t block_sources = 256;
     struct SourceBlock {
         double q_before;         // sum of the weights of all previous blocks
         std::int64_t first_ray;  // number of rays of all previous blocks

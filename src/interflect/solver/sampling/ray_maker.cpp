@@ -109,15 +109,18 @@ void RayMaker::shoot_from_part(std::uint32_t part, std::uint64_t skipped, std::s
 }
 
 void advance(SampleStreams& streams, const RayAllocation& allocation, std::size_t elements, std::size_t parts) {
-    constexpr std::size_t blocks_per_task = 16;
-    streams.used.resize(std::max(streams.used.size(), elements), 0);
+    constexpr std::size_t blocks_per_task = Counts::block / RayAllocation::block_sources;
+    streams.used.resize(std::max(streams.used.size(), elements));
     streams.used_by_parts.resize(std::max(streams.used_by_parts.size(), parts), 0);
     // A source belongs to a single block and hence to a single thread.
     parallel_for_ranges(allocation.block_count(), blocks_per_task, [&](std::size_t begin, std::size_t end) {
         for (std::size_t block = begin; block < end; ++block)
             allocation.for_each_in_block(block, [&](std::size_t s, std::int64_t first, std::int64_t next) {
-                std::uint64_t& used = s < elements ? streams.used[s] : streams.used_by_parts[s - elements];
-                used += static_cast<std::uint64_t>(next - first);
+                const auto used = static_cast<std::uint64_t>(next - first);
+                if (s < elements)
+                    streams.used.add(s, used);
+                else
+                    streams.used_by_parts[s - elements] += used;
                 return true;
             });
     });

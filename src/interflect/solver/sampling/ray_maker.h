@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "interflect/base/numbers/counts.h"
 #include "interflect/base/numbers/points.h"
 #include "interflect/elements/cell.h"
 #include "interflect/elements/forest.h"
@@ -22,7 +23,7 @@ struct SampleStreams {
 
     PointSet points;
     std::uint64_t seed;
-    std::vector<std::uint64_t> used;           // number of used points of each leaf
+    Counts used;                               // number of used points of each leaf
     std::vector<std::uint64_t> used_by_parts;  // number of used points of each luminaire part
     std::uint64_t allocations = 0;             // number of allocations so far
 };

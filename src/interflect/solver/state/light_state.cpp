@@ -46,7 +46,7 @@ V3f centre_of(const ElementForest& forest, ElementIndex element) {
 
 LightState::LightState(const RunInputs& inputs, const SolveOptions& options)
     : forest(std::make_shared<ElementForest>(inputs.scene, forest_capacity(inputs.scene, options))),
-      history(forest->size(), 0.0f),
+      history(forest->patch_count()),
       noise(inputs.scene.patches.size()) {
     solution.forest = forest;
     solution.options = options;

@@ -8,6 +8,7 @@
 #include "interflect/solution.h"
 #include "interflect/solver/light/group_light.h"
 #include "interflect/solver/light/radiosity.h"
+#include "interflect/solver/noise/history.h"
 #include "interflect/solver/noise/noise_model.h"
 #include "interflect/solver/noise/risk_check.h"
 #include "interflect/solver/state/inputs.h"
@@ -22,7 +23,7 @@ struct LightState {
 
     const std::shared_ptr<ElementForest> forest;
     Solution solution;
-    std::vector<float> history;  // number of rays averaged into each element's mean
+    History history;
     NoiseModel noise;
     RiskCheck risk_check;
     RgbD escaped_power{0, 0, 0};    // mean escaped power, averaged like irradiance [lm or W]

@@ -21,6 +21,7 @@ struct SamplingState {
 
     ViewImportance view;
     Neighbourhoods neighbourhoods;                // empty without a view
+    std::vector<float> importance_at_start;       // indirect importance before the current iteration
     std::vector<PartImportance> part_importance;  // importance of luminaire parts for the current views
     SampleStreams streams;
     ContributionSums contributions;

@@ -78,6 +78,19 @@ IterationReport report_of(const ReportNumbers& n) {
     return report;
 }
 
+void archive_counts(StateArchive& archive, const std::string& name, Counts& counts) {
+    std::vector<std::uint64_t> numbers;
+    for (std::size_t i = 0; i < counts.size(); ++i) numbers.push_back(counts[i]);
+    numbers = archive.by_value(name, std::move(numbers));
+    if (!archive.reads()) return;
+    counts = {};
+    counts.resize(numbers.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        StateArchive::require_range(numbers[i] < Counts::end, name);
+        counts.add(i, numbers[i]);
+    }
+}
+
 void require(bool holds, const char* what) {
     if (!holds) throw std::runtime_error(std::string("the state of the run: ") + what);
 }
@@ -96,7 +109,7 @@ void SolverState::archive(StateArchive& archive) {
     archive_groups(archive, "direct", light.solution.direct);
     archive.amounts("indirect_importance", light.solution.indirect_importance);
     archive("non_finite", light.solution.non_finite);
-    archive.amounts("history", light.history);
+    light.history.archive(archive);
     sampling.view.archive(archive);
     light.noise.archive(archive);
     rays.schedule.archive(archive);
@@ -123,7 +136,7 @@ void SolverState::archive(StateArchive& archive) {
     }
 
     // Archive the sampling of the rays, and their numbers
-    archive("points/used", sampling.streams.used);
+    archive_counts(archive, "points/used", sampling.streams.used);
     archive("points/used_by_parts", sampling.streams.used_by_parts);
     archive("part_importance", sampling.part_importance);
     for (const PartImportance& part : sampling.part_importance)

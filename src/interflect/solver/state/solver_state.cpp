@@ -101,7 +101,7 @@ void grow_with_forest(SolverState& state, std::uint32_t first) {
     inherit(forest, first, light.solution.direct);
     light.noise.grow(forest, first);
     state.inputs.materials.grow(forest);
-    inherit(forest, first, light.history);
+    light.history.grow(forest, first);
     if (state.sampling.view.empty()) return;
     inherit(forest, first, light.solution.indirect_importance);
     set_view_importance(light, state.sampling);

@@ -1,5 +1,9 @@
 #include "interflect/solver/transport/received.h"
 
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <span>
 #include <utility>
 
 #include "interflect/base/sums/rank_sums.h"
@@ -16,10 +20,15 @@ class RenumberedSums {
     RenumberedSums(ContributionSums& sums, std::uint32_t old_size, std::vector<ElementIndex> old_numbers)
         : sums_(sums), old_size_(old_size), old_numbers_(std::move(old_numbers)) {}
 
-    bool is_zero(ElementIndex e) const { return sums_.is_zero(number(e)); }
+    bool are_simple() const { return sums_.are_simple(); }
+    template <bool are_simple>
+    bool is_zero(ElementIndex e) const {
+        return are_simple ? sums_.is_simple_zero(number(e)) : sums_.is_zero(number(e));
+    }
     Contribution take(ElementIndex e) { return sums_.take(number(e)); }
     std::array<std::int64_t, 3> take(ElementIndex e, std::size_t group) { return sums_.take(number(e), group); }
     std::size_t terms() const { return sums_.terms(); }
+    bool is_zero(std::size_t e) const { return sums_.groups() == 0 && sums_.is_zero(number(e)); }
     void read(std::size_t e, std::span<std::int64_t> terms) const { sums_.read(number(e), terms); }
     void take(std::size_t e, std::span<std::int64_t> terms) {
         sums_.read(number(e), terms);
@@ -40,6 +49,47 @@ class RenumberedSums {
     ContributionSums& sums_;
     std::uint32_t old_size_;
     std::vector<ElementIndex> old_numbers_;
+};
+
+/// Received values as integers, for share_parts().
+class ReceivedBits {
+  public:
+    explicit ReceivedBits(Received& received) : received_(received) {}
+
+    std::size_t terms() const {
+        return (received_.irradiance.empty() ? 0 : 4) + (received_.importance.empty() ? 0 : 1) +
+               3 * received_.groups.size();
+    }
+    bool is_zero(std::size_t e) const {
+        const bool has_power =
+            !received_.irradiance.empty() && (received_.irradiance[e] != Rgb(0) || received_.variance[e] != 0);
+        const bool has_importance = !received_.importance.empty() && received_.importance[e] != 0;
+        return !has_power && !has_importance && received_.groups.empty();
+    }
+    void read(std::size_t e, std::span<std::int64_t> row) const {
+        std::size_t t = 0;
+        for_each_number(received_, e, [&](float number) { row[t++] = std::bit_cast<std::uint32_t>(number); });
+    }
+    void add(std::size_t e, std::span<const std::int64_t> row) {
+        std::size_t t = 0;
+        for_each_number(received_, e,
+                        [&](float& number) { number = std::bit_cast<float>(static_cast<std::uint32_t>(row[t++])); });
+    }
+
+  private:
+    template <class Visit>
+    static void for_each_number(Received& received, std::size_t e, const Visit& visit) {
+        const auto visit_colour = [&](Rgb& colour) {
+            for (int c = 0; c < 3; ++c) visit(colour[c]);
+        };
+        if (!received.irradiance.empty()) {
+            visit_colour(received.irradiance[e]);
+            visit(received.variance[e]);
+        }
+        if (!received.importance.empty()) visit(received.importance[e]);
+        for (std::vector<Rgb>& of_group : received.groups) visit_colour(of_group[e]);
+    }
+    Received& received_;
 };
 
 /// Removes the last elements beyond `max_elements`, and adds their sums to their parents.
@@ -81,15 +131,25 @@ void blend(const ElementForest& forest, const TransportStep& step, const RayAllo
     });
 }
 
+/// Converts the sums of the range `own`. The other elements have 0.
+template <bool are_simple>
 void convert(const ElementForest& forest, const TransportStep& step, const ContributionUnits& units,
-             RenumberedSums& sums, Received& received) {
+             RenumberedSums& sums, const ElementRange& own, Received& received) {
     constexpr std::size_t at_once = std::size_t{1} << 16;  // elements whose sums fill more than a page of 2 MiB
-    if (step.carries_power()) received.irradiance.resize(forest.size()), received.variance.resize(forest.size());
-    if (step.carries_importance()) received.importance.resize(forest.size());
     received.groups.assign(step.groups.size(), std::vector<Rgb>(forest.size()));
-    parallel_for_ranges(forest.size(), at_once, [&](std::size_t begin, std::size_t end) {
+    const auto skip = [&](std::size_t begin, std::size_t end) {
+        if (step.carries_power())
+            for (std::size_t e = begin; e < end; ++e) {
+                received.irradiance[e] = Rgb(0);
+                received.variance[e] = 0;
+            }
+        for (std::vector<Rgb>& of_group : received.groups)
+            for (std::size_t e = begin; e < end; ++e) of_group[e] = Rgb(0);
+        if (begin < end) sums.release(begin, end);
+    };
+    const auto convert_some = [&](std::size_t begin, std::size_t end) {
         for (ElementIndex e(begin); e < end; ++e) {
-            if (received.groups.empty() && sums.is_zero(e)) {  // avoids writing the sums
+            if (received.groups.empty() && sums.is_zero<are_simple>(e)) {  // avoids writing the sums
                 if (step.carries_power()) {
                     received.irradiance[e] = Rgb(0);
                     received.variance[e] = 0;
@@ -107,8 +167,30 @@ void convert(const ElementForest& forest, const TransportStep& step, const Contr
             if (step.carries_importance())
                 received.importance[e] = static_cast<float>(units.importance.to_number(importance) / area);
         }
-        sums.release(begin, end);
-    });
+        if (begin < end) sums.release(begin, end);
+    };
+    const std::size_t size = forest.size();
+    const auto for_each_array = [&](const auto& body) {
+        if (step.carries_power()) {
+            body(received.irradiance);
+            body(received.variance);
+        }
+        if (step.carries_importance()) body(received.importance);
+    };
+    for_each_array([&](auto& values) { values.reserve(size); });
+    for (std::size_t first = 0; first < size; first += many_elements) {
+        // The values use memory only as fast as sums release theirs
+        const std::size_t last = std::min(size, first + many_elements);
+        for_each_array([&](auto& values) { values.resize(std::max(values.size(), last)); });
+        parallel_for_ranges(last - first, at_once, [&](std::size_t from, std::size_t to) {
+            const std::size_t begin = first + from, end = first + to;
+            const std::size_t own_begin = std::clamp(own.begin, begin, end), own_end = std::clamp(own.end, begin, end);
+            skip(begin, own_begin);
+            convert_some(own_begin, own_end);
+            skip(own_end, end);
+        });
+    }
+    for_each_array([&](auto& values) { values.resize(size); });
 }
 
 void push_pull(const ElementForest& forest, const TransportStep& step, Received& received) {
@@ -143,13 +225,29 @@ Received collect(TransportStep& step, ElementForest& forest, std::uint32_t old_s
                  const PayloadTotals& payload, const ContributionUnits& units, const FoundImportance* importance,
                  ContributionSums& sums, Ranks* ranks) {
     RenumberedSums renumbered(sums, old_size, forest.put_in_order(old_size));
-    if (ranks) add_over_ranks(*ranks, forest.size(), renumbered);
+    // Ranks convert the sums of their own elements, unless elements beyond the limit must be merged before
+    const bool shares_conversion = ranks && forest.size() <= std::max<std::size_t>(step.oracle.max_elements, old_size);
+    if (shares_conversion)
+        add_in_parts(*ranks, forest.size(), renumbered);
+    else if (ranks)
+        add_over_ranks(*ranks, forest.size(), renumbered);
     drop_excess(forest, renumbered, step.oracle.max_elements, old_size);
     Received received;
     step.oracle.importance = std::vector<float>();
     if (!importance) step.q = std::vector<float>();
-    if (step.reusable_buffer) received.irradiance = std::move(*step.reusable_buffer);
-    convert(forest, step, units, renumbered, received);
+    if (step.reusable_buffer && step.reusable_buffer->capacity() >= forest.size())
+        received.irradiance = std::move(*step.reusable_buffer);
+    else if (step.reusable_buffer)
+        *step.reusable_buffer = std::vector<Rgb>();
+    const auto convert_all = renumbered.are_simple() ? convert<true> : convert<false>;
+    const ElementRange own = shares_conversion
+                                 ? part_of_rank(*ranks, forest.size(), static_cast<std::size_t>(ranks->rank()))
+                                 : ElementRange{0, forest.size()};
+    convert_all(forest, step, units, renumbered, own, received);
+    if (shares_conversion) {
+        ReceivedBits bits(received);
+        share_parts(*ranks, forest.size(), bits);
+    }
     if (importance && !step.importance_at_patches)
         blend(forest, step, allocation, *importance, payload, old_size, received.importance);
     if (importance) received.part_importance = found_by_parts(step, allocation, *importance, old_size);

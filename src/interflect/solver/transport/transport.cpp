@@ -8,6 +8,7 @@
 
 #include "interflect/base/numbers/fixed_point.h"
 #include "interflect/base/numbers/random.h"
+#include "interflect/base/numbers/ranked_bits.h"
 #include "interflect/base/sums/rank_sums.h"
 #include "interflect/base/threads/parallel.h"
 #include "interflect/base/threads/shared_ranges.h"
@@ -24,6 +25,13 @@
 namespace interflect::detail {
 
 namespace {
+
+/// Returns the elements that may receive contributions, if there are many and others that receive none; else nothing.
+RankedBits receivers(const ElementForest& forest, const TransportStep& step) {
+    const bool only_leaves = !(step.oracle.refines && step.carries_power()) && !step.importance_at_patches;
+    if (!only_leaves || forest.size() < many_elements) return {};
+    return RankedBits(forest.size(), [&](std::uint32_t e) { return forest.is_leaf(ElementIndex(e)); });
+}
 
 std::uint64_t walk_key(const SampleStreams& streams) {
     constexpr std::uint64_t walk_stream = 0x77616c6b;  // "walk" in ASCII
@@ -207,7 +215,7 @@ Received transport(const Materials& materials, ElementForest& forest, const RayC
     if (!(data.rays.allocation().q_sum() > 0)) return nothing_received(step, old_size);
 
     // Trace batches of rays, and deposit their payloads
-    sums.begin_step(old_size);
+    sums.begin_step(old_size, step.carries_importance(), receivers(forest, step));
     std::optional<FoundImportance> found_importance = make_found_importance(step, materials, forest);
     const Walks walks(materials, forest, ray_caster, data.panes, step, data.contribution_units, old_size,
                       walk_key(streams));

@@ -239,9 +239,9 @@ class GlobalLines final : public Passes {
         ++state.sampling.streams.allocations;
         Received received = sums.received(forest);
         state.rays.escaped += received.escaped_rays;
-        state.sampling.streams.used.resize(forest.size(), 0);
+        state.sampling.streams.used.resize(forest.size());
         for (PatchIndex i{0}; i < forest.patch_count(); ++i)  // the method does not divide patches
-            state.sampling.streams.used[i] += static_cast<std::uint64_t>(sums.started()[i]);
+            state.sampling.streams.used.add(i, static_cast<std::uint64_t>(sums.started()[i]));
         return received;
     }
 

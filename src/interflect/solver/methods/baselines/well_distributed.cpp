@@ -79,10 +79,10 @@ Estimate WellDistributedRays::trace(SolverState& state, TracedIteration& iterati
         step.oracle = make_oracle(state.light.solution, total_ + rays, state.inputs.element_floor.default_min_area());
 
     // Trace the missing rays, and count the rays of each source
-    std::vector<std::uint64_t> used_before = state.sampling.streams.used,
-                               used_by_parts_before = state.sampling.streams.used_by_parts;
+    Counts used_before = state.sampling.streams.used;
+    std::vector<std::uint64_t> used_by_parts_before = state.sampling.streams.used_by_parts;
     used_by_parts_before.resize(shot_by_parts_.size(), 0);
-    used_before.resize(iteration.plan.old_elements, 0);
+    used_before.resize(iteration.plan.old_elements);
     const Received received = run_step(state, std::move(step));
     total_ += rays;
     state.light.solution.non_finite += power.non_finite_leaves;

@@ -19,11 +19,11 @@ BatchResult follow_paths(SolverState& state, const WalkSource& walk_source, std:
     PathBatch batch(state, walk_source, paths, key);
     PathSums sums = batch.follow();
     state.rays.escaped += sums.escaped_rays;
-    state.sampling.streams.used.resize(sums.started.size(), 0);
+    state.sampling.streams.used.resize(sums.started.size());
     BatchResult arrived;
     for (ElementIndex i{0}; i < sums.received.size(); ++i) {
         arrived.irradiance.push_back(Rgb(sums.unit.to_colour(sums.received[i])) / state.light.forest->area(i));
-        state.sampling.streams.used[i] += static_cast<std::uint64_t>(sums.started[i]);
+        state.sampling.streams.used.add(i, static_cast<std::uint64_t>(sums.started[i]));
     }
     pull(*state.light.forest, arrived.irradiance);
     arrived.hits = std::move(sums.hits);

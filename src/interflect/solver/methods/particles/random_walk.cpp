@@ -140,8 +140,7 @@ void RandomWalks::merge(SolverState& state, const Estimate& estimate, const Trac
         state.light.solution.irradiance[i] +=
             static_cast<float>(tau) * (estimate.irradiance[i] - state.light.solution.irradiance[i]);
     state.light.escaped_power += tau * (estimate.escaped_power - state.light.escaped_power);
-    std::fill(state.light.history.begin(), state.light.history.end(),
-              iteration.plan.warms_up ? 0.0f : static_cast<float>(now));
+    state.light.history.assign(state.light.history.size(), iteration.plan.warms_up ? 0.0f : static_cast<float>(now));
 }
 
 void RandomWalks::change_views(SolverState& state) {
