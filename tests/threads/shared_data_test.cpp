@@ -73,15 +73,16 @@ TEST(FixedPoint, SumDoesNotDependOnTheThreads) {
     EXPECT_EQ(sums[2], FixedPoint::Value{});
 }
 
-TEST(ContributionSums, AreTheSameWhateverThreadsBringThem) {
-    constexpr std::size_t elements = 1000, payloads = 7, rays = 200'000;
+/// @param unit  Factor of the contributions.
+void expect_sums_of_threads(std::size_t elements, std::int64_t unit) {
+    constexpr std::size_t payloads = 7, rays = 200'000;
     std::vector<Contribution> contributions;
     for (std::int64_t s = 0; s < static_cast<std::int64_t>(payloads); ++s)
-        contributions.push_back({s, 3 * s, -s, s * s, 1 + s});
+        contributions.push_back({unit * s, 3 * unit * s, -s, unit * s * s, 1 + s});
     std::vector<Contribution> expected(elements, Contribution{});
     ContributionSums sums(elements);
     sums.begin_step(elements);
-    const auto element = [](std::size_t ray) { return ElementIndex(ray * ray % elements); };
+    const auto element = [=](std::size_t ray) { return ElementIndex(ray * ray % elements); };
     for (std::size_t ray = 0; ray < rays; ++ray)
         for (std::size_t c = 0; c < contributions[0].size(); ++c)
             expected[element(ray)][c] += contributions[ray % payloads][c];
@@ -95,6 +96,13 @@ TEST(ContributionSums, AreTheSameWhateverThreadsBringThem) {
         buffer.flush_all();
     });
     for (std::size_t e = 0; e < elements; ++e) EXPECT_EQ(sums.take(e), expected[e]) << e;
+}
+
+TEST(ContributionSums, AreTheSameWhateverThreadsBringThem) { expect_sums_of_threads(1000, 1); }
+
+/// The sums exceed the 48 bits that packed rows have for a term.
+TEST(ContributionSums, AreTheSameWhateverThreadsBringThemIfPacked) {
+    expect_sums_of_threads(many_elements, std::int64_t{1} << 46);
 }
 
 }  // namespace

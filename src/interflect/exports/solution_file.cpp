@@ -303,7 +303,7 @@ std::vector<FileRange> write_arrays(Hdf5Writer& file, const std::string& descrip
 
 constexpr const char *state_group = "/state", *state_index = "/state/index", *state_bytes = "/state/bytes";
 /// Version of the state. Increase it whenever an array of the state changes.
-constexpr int state_version = 5;
+constexpr int state_version = 6;
 
 std::vector<FileRange> write_state(Hdf5Writer& file, const StateArchive& state) {
     Json arrays = Json::array();
@@ -323,9 +323,14 @@ StateArchive read_state(const VerifiedFile& file) {
         throw std::runtime_error("it has only the result of a run, not its state, which checkpoints have");
     const std::vector<char> text = file.arrays.read<char>(state_index);
     const Json index = parse_json_text({text.data(), text.size()});
-    if (index.at("state_version") != state_version || index.at("version") != INTERFLECT_VERSION)
-        throw std::runtime_error(fmt::format("its run was saved by Interflect {}; this is {}",
-                                             index.at("version").get<std::string>(), INTERFLECT_VERSION));
+    const auto saved_version = index.at("state_version").get<int>();
+    const auto saved_by = index.at("version").get<std::string>();
+    if (saved_version != state_version || saved_by != INTERFLECT_VERSION)
+        throw std::runtime_error(
+            fmt::format("Interflect {} saved it with version {} of the state, but Interflect {} reads version {}; "
+                        "resume it with the "
+                        "program that saved it, or solve the scene again",
+                        saved_by, saved_version, INTERFLECT_VERSION, state_version));
     const std::vector<std::byte> bytes = file.arrays.read<std::byte>(state_bytes);
     std::map<std::string, std::vector<std::byte>> arrays;
     std::span<const std::byte> left = bytes;

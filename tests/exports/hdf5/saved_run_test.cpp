@@ -302,6 +302,24 @@ TEST(Solver, OpensNoDamagedImage) {
     EXPECT_THROW(Solver::open_image(""), std::runtime_error);
 }
 
+TEST(Solver, OpensNoStateOfAnOlderBuild) {
+    SolveOptions options{.method = find_method("srr")};
+    options.limits.rays = 1000;
+    std::string image = Solver(open_room(), options).image();
+    constexpr std::string_view name = "\"state_version\":";
+    const std::size_t at = image.find_first_of("0123456789", image.find(name));
+    ASSERT_EQ(image[at], '6');
+    image[at] = '5';
+    try {
+        Solver::open_image(image);
+        ADD_FAILURE() << "expected an error";
+    } catch (const std::runtime_error& e) {
+        EXPECT_THAT(e.what(), testing::HasSubstr("with version 5 of the state"));
+        EXPECT_THAT(e.what(), testing::HasSubstr("reads version 6"));
+        EXPECT_THAT(e.what(), testing::HasSubstr("solve the scene again"));
+    }
+}
+
 TEST_P(SavedRun, HasTheSameBitsWhereverItIsStopped) {
     const Solution& expected = undisturbed();
     Solver solver(scene, GetParam().options);

@@ -70,7 +70,8 @@ class PackedIntegers {
         if (!is_packed())
             words[4] = 0;
         else if (may_have_upper(row))
-            for (std::size_t t = 0; t < most_terms; ++t) upper_[row * most_terms + t] = 0;
+            for (std::size_t t = 0; t < terms_; ++t)
+                if (std::uint16_t& upper = upper_[row * most_terms + t]; upper != 0) upper = 0;  // may allocate no page
     }
     /// Frees the memory of rows that are 0.
     void release(std::size_t begin, std::size_t end) { words_.release(begin * row_words_, end * row_words_); }

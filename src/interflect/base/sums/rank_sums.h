@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include "interflect/base/sums/packed_sums.h"
@@ -80,6 +81,7 @@ void add_over_ranks(Ranks& ranks, std::size_t elements, Sums& sums) {
 /// Returns the values of all ranks, in their order.
 template <class T>
 std::vector<T> gather_over_ranks(Ranks& ranks, std::span<const T> values) {
+    static_assert(std::is_trivially_copyable_v<T>);
     std::vector<T> all;
     for (const Ranks::Bytes& bytes : ranks.gather(std::as_bytes(values))) {
         const std::size_t before = all.size();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
@@ -163,7 +164,10 @@ class ContributionSums {
         return all_receive_ ? element : receivers_.rank(static_cast<std::uint32_t>(element));
     }
     /// Returns the row of an element that receives contributions.
-    std::size_t row(std::size_t element) const { return rows_before(element); }
+    std::size_t row(std::size_t element) const {
+        assert(receives(element));
+        return rows_before(element);
+    }
     std::int64_t* group_sum(std::size_t element, std::size_t group) {
         return &group_sums_[row(element) * group_terms_ + 3 * group];
     }

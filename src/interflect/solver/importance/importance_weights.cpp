@@ -125,7 +125,7 @@ std::vector<float> element_weights(const Solution& so_far, std::span<const float
     const auto first_new = static_cast<std::uint32_t>(indirect_importance.size());
     std::vector<float> weights = smoothed_importance(*so_far.forest, Importance(indirect_importance), o.smoothing,
                                                      o.exponent, indirect_importance.size());
-    if (first_new < so_far.forest->size()) inherit(*so_far.forest, first_new, weights);
+    inherit(*so_far.forest, first_new, weights);
     return weights;
 }
 

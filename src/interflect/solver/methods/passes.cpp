@@ -100,14 +100,14 @@ struct Passes::Pass {
     const bool oracle_refines;  ///< Whether the oracle refines the mesh while rays are traced.
     BounceBudget budget;
     ImportanceWeights weights;
-    bool sums_leaves = false;      ///< Whether `sum` has only leaves while rays are traced, to save memory.
+    bool sums_leaves = false;      ///< Whether `sum` has only the irradiance of leaves while rays are traced.
     bool repeats_weights = false;  ///< Whether each bounce computes the weights of elements again, to save memory.
     /// Flag of each element: 1 if its reflected rays start at hit points (StartPoints), else 0. Empty while the oracle
     /// refines.
     std::vector<std::uint8_t> reflecting_where_received = {};
 
     Estimate sum = {};                  ///< Light of the traced bounces.
-    std::uint32_t elements_of_sum = 0;  ///< If not 0: `sum` has only the leaves of this number of elements.
+    std::uint32_t elements_of_sum = 0;  ///< If not 0: sum.irradiance has only the leaves of this number of elements.
     double first_power = 0, first_weighted_power = 0;  ///< Power of the first bounce, plain and weighted by importance.
 
     bool emits = true;              ///< Whether the next bounce is the first, which shoots the emitted power.
@@ -172,10 +172,10 @@ void Passes::Pass::add_bounce(Received received, bool keeps_direct) {
     unshot_groups = std::move(received.groups);
 }
 
-/// Removes the values of inner elements from the sum, to save memory while rays are traced.
+/// Removes the irradiance of inner elements from the sum, to save memory while rays are traced. Their variance stays,
+/// because children that inherit light from their parent have correlated noise.
 void Passes::Pass::reduce_sum_to_leaves(const ElementForest& forest) {
     keep_leaves(forest, sum.irradiance);
-    keep_leaves(forest, sum.variance);
     elements_of_sum = forest.size();
 }
 
@@ -183,7 +183,6 @@ void Passes::Pass::reduce_sum_to_leaves(const ElementForest& forest) {
 void Passes::Pass::expand_sum(const ElementForest& forest) {
     if (elements_of_sum == 0) return;
     expand_leaves(forest, elements_of_sum, sum.irradiance);
-    expand_leaves(forest, elements_of_sum, sum.variance);
     elements_of_sum = 0;
 }
 
@@ -285,12 +284,10 @@ Estimate Passes::trace_pass(SolverState& state, std::int64_t rays, bool oracle_r
     Estimate& sum = pass.sum;
     if (sum.irradiance.empty()) sum = zero_estimate(state.inputs, state.light);  // no bounce had power to shoot
     pass.expand_sum(*state.light.forest);
-    if (!oracle_refines || pass.sums_leaves) {
-        // Compute the inner elements from their children.
-        pull(*state.light.forest, sum.irradiance);
-        pull_variance(*state.light.forest, sum.variance);
-    }
+    // Compute the inner elements from their children.
+    if (!oracle_refines || pass.sums_leaves) pull(*state.light.forest, sum.irradiance);
     if (!oracle_refines) {  // rays deposit on leaves only
+        pull_variance(*state.light.forest, sum.variance);
         pull(*state.light.forest, sum.groups);
         pull(*state.light.forest, sum.direct);
     }

@@ -8,6 +8,7 @@
 
 #include "interflect/base/sums/rank_sums.h"
 #include "interflect/base/threads/parallel.h"
+#include "interflect/base/threads/thread_count.h"
 #include "interflect/elements/forest.h"
 
 namespace interflect::detail {
@@ -135,7 +136,7 @@ void blend(const ElementForest& forest, const TransportStep& step, const RayAllo
 template <bool are_simple>
 void convert(const ElementForest& forest, const TransportStep& step, const ContributionUnits& units,
              RenumberedSums& sums, const ElementRange& own, Received& received) {
-    constexpr std::size_t at_once = std::size_t{1} << 16;  // elements whose sums fill more than a page of 2 MiB
+    constexpr std::size_t at_once = std::size_t{1} << 16;  // elements whose sums fill about a page of 2 MiB
     received.groups.assign(step.groups.size(), std::vector<Rgb>(forest.size()));
     const auto skip = [&](std::size_t begin, std::size_t end) {
         if (step.carries_power())
@@ -178,9 +179,10 @@ void convert(const ElementForest& forest, const TransportStep& step, const Contr
         if (step.carries_importance()) body(received.importance);
     };
     for_each_array([&](auto& values) { values.reserve(size); });
-    for (std::size_t first = 0; first < size; first += many_elements) {
-        // The values use memory only as fast as sums release theirs
-        const std::size_t last = std::min(size, first + many_elements);
+    // The values use memory only as fast as sums release theirs
+    const std::size_t between_releases = std::max(many_elements, at_once * static_cast<std::size_t>(thread_count()));
+    for (std::size_t first = 0; first < size; first += between_releases) {
+        const std::size_t last = std::min(size, first + between_releases);
         for_each_array([&](auto& values) { values.resize(std::max(values.size(), last)); });
         parallel_for_ranges(last - first, at_once, [&](std::size_t from, std::size_t to) {
             const std::size_t begin = first + from, end = first + to;
