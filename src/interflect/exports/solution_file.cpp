@@ -326,11 +326,10 @@ StateArchive read_state(const VerifiedFile& file) {
     const auto saved_version = index.at("state_version").get<int>();
     const auto saved_by = index.at("version").get<std::string>();
     if (saved_version != state_version || saved_by != INTERFLECT_VERSION)
-        throw std::runtime_error(
-            fmt::format("Interflect {} saved it with version {} of the state, but Interflect {} reads version {}; "
-                        "resume it with the "
-                        "program that saved it, or solve the scene again",
-                        saved_by, saved_version, INTERFLECT_VERSION, state_version));
+        throw std::runtime_error(fmt::format(
+            "Interflect {} saved it with version {} of the state, but Interflect {} reads version {}; resume it with "
+            "the program that saved it, or solve the scene again",
+            saved_by, saved_version, INTERFLECT_VERSION, state_version));
     const std::vector<std::byte> bytes = file.arrays.read<std::byte>(state_bytes);
     std::map<std::string, std::vector<std::byte>> arrays;
     std::span<const std::byte> left = bytes;

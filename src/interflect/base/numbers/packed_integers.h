@@ -71,7 +71,8 @@ class PackedIntegers {
             words[4] = 0;
         else if (may_have_upper(row))
             for (std::size_t t = 0; t < terms_; ++t)
-                if (std::uint16_t& upper = upper_[row * most_terms + t]; upper != 0) upper = 0;  // may allocate no page
+                // Unneeded writes would allocate pages
+                if (std::uint16_t& upper = upper_[row * most_terms + t]; upper != 0) upper = 0;
     }
     /// Frees the memory of rows that are 0.
     void release(std::size_t begin, std::size_t end) { words_.release(begin * row_words_, end * row_words_); }
