@@ -26,7 +26,7 @@ TEST(PackedIntegers, HaveTheSumsOfAllTerms) {
                 const std::size_t row = random() % rows / 7 * 7;
                 Row numbers{};
                 for (std::size_t t = 0; t < terms; ++t) {
-                    // of 8 to 60 bits; negative ones occur nowhere else, but have exact sums, too
+                    // From 8 to 60 bits. Contributions are not negative, but sums of negative numbers are exact, too
                     numbers[t] = static_cast<std::int64_t>(random()) >> (4 + random() % 53);
                     expected[row][t] += numbers[t];
                 }

@@ -277,7 +277,7 @@ class PathPicture {
         }
     }
 
-    /// Predicts the light of all first hits, also those of the first samples, from the first samples around.
+    /// Predicts the light of first hits by NearbyLight, and replaces the predictions of the first samples.
     void predict_by_nearby_light() {
         if (stopped()) return;
         shared_.predict_by(NearbyLight(options_.width, options_.height, std::move(nearby_)));

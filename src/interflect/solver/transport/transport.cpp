@@ -26,7 +26,7 @@ namespace interflect::detail {
 
 namespace {
 
-/// Returns the elements that may receive contributions, if there are many and others that receive none; else nothing.
+/// Returns the elements that can receive contributions. Returns an empty set if all elements can, or if there are few.
 RankedBits receivers(const ElementForest& forest, const TransportStep& step) {
     const bool only_leaves = !(step.oracle.refines && step.carries_power()) && !step.importance_at_patches;
     if (!only_leaves || forest.size() < many_elements) return {};
