@@ -16,7 +16,7 @@ KnownIrradiance known_irradiance(const Scene& scene, const ElementForest& forest
 KnownIrradiance known_irradiance(const Scene& scene, const Solution& solution);
 
 /// Peak memory of trace_picture() [bytes].
-inline constexpr std::size_t path_bytes_per_pixel = 760;
+inline constexpr std::size_t path_bytes_per_pixel = 880;
 
 /// Draws the picture with virtual lights; the arguments are those of trace_picture().
 Rendering trace_instant_picture(const Scene& scene, const RayCaster& ray_caster, const PathStart& start,
