@@ -268,7 +268,7 @@ class PathPicture {
             const RgbD reflected = (batch.halves[h].direct + batch.halves[h].indirect) / per_radiance;
             const bool shows_surface = first.distance > 0 && mean_channel(first.albedo) > 0;
             if (!shows_surface || !is_finite(Rgb(reflected))) continue;
-            NearbyLight::Sample& sample = nearby_[2 * batch.pixel + h];
+            NearbyLight::Sample& sample = nearby_[2 * std::size_t{batch.pixel} + h];
             sample.position = V3f(first.position);
             sample.normal = V3f(first.normal);
             sample.spacing = static_cast<float>(first.distance) * plan_.start.pixel_angle + plan_.start.pixel_size;
