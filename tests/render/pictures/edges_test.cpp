@@ -48,17 +48,22 @@ Scene halves(const Line& line, const Rgb& bright_reflectance, const Rgb& bright_
     return scene;
 }
 
-/// Returns the share of the pixel that the left half covers.
-double coverage(const Line& line, int x, int y) {
+/// Returns the mean over a pixel. @param value  Receives whether a point is in the left half, and its coordinates.
+double mean_in_pixel(const Line& line, int x, int y, const auto& value) {
     constexpr int points = 64;  // on each axis
-    int covered = 0;
+    double sum = 0;
     for (int j = 0; j < points; ++j)
         for (int i = 0; i < points; ++i) {
             const double u = x + (i + 0.5) / points - side / 2.0, v = side / 2.0 - (y + (j + 0.5) / points);
             const double right = u * static_cast<double>(line.cosine) + v * static_cast<double>(line.sine);
-            covered += right < static_cast<double>(line.offset);
+            sum += value(right < static_cast<double>(line.offset), u, v);
         }
-    return static_cast<double>(covered) / (points * points);
+    return sum / (points * points);
+}
+
+/// Returns the share of the pixel that the left half covers.
+double coverage(const Line& line, int x, int y) {
+    return mean_in_pixel(line, x, y, [](bool is_left, double, double) { return is_left ? 1.0 : 0.0; });
 }
 
 struct EdgeErrors {
@@ -137,16 +142,11 @@ TEST(EdgesOfLargeElements, AreSharpAndHaveTheRightMean) {
                                      .limits = {.rays = 100'000},
                                      .refinement = {.max_elements = scene.patches.size()}});
     const auto expected = [&](int x, int y) {
-        constexpr int points = 64;  // on each axis
-        double sum = 0;
-        for (int j = 0; j < points; ++j)
-            for (int i = 0; i < points; ++i) {
-                const double u = x + (i + 0.5) / points - side / 2.0, v = side / 2.0 - (y + (j + 0.5) / points);
-                const double right = u * static_cast<double>(slanted.cosine) + v * static_cast<double>(slanted.sine);
-                const auto of_side = static_cast<double>(right < 0 ? reflectance : grey), h = double{height};
-                sum += of_side * double{intensity} * h / std::pow(u * u + v * v + h * h, 1.5);
-            }
-        return sum / (points * points) / std::numbers::pi;
+        const auto radiance_at = [](bool is_left, double u, double v) {
+            const auto of_side = static_cast<double>(is_left ? reflectance : grey), h = double{height};
+            return of_side * double{intensity} * h / std::pow(u * u + v * v + h * h, 1.5) / std::numbers::pi;
+        };
+        return mean_in_pixel(slanted, x, y, radiance_at);
     };
     PictureOptions options{.width = side, .height = side, .shading = Shading::hybrid, .samples = 2};
     double sum = 0, squares = 0, count = 0;

@@ -280,7 +280,7 @@ class PathPicture {
     /// Predicts the light of first hits by NearbyLight, and replaces the predictions of the first samples.
     void predict_by_nearby_light() {
         if (stopped()) return;
-        shared_.predict_by(NearbyLight(options_.width, options_.height, std::move(nearby_)));
+        shared_.predict_by(options_.width, options_.height, std::move(nearby_));
         nearby_ = {};
         trace_first_hits([](std::uint32_t i) { return SampleBatch{.pixel = i, .tracing = Tracing::first_hits}; },
                          [this](const SampleBatch& batch) { pixels_[batch.pixel].replace_prediction(batch); });

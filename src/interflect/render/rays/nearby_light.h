@@ -34,10 +34,6 @@ class NearbyLight {
     /// Returns the light of samples around the pixel that show the plane of the patch.
     Found at(std::uint32_t pixel, const PatchGeometry& patch) const;
 
-    int width() const { return width_; }
-    int height() const { return height_; }
-    const std::vector<Sample>& samples() const { return samples_; }
-
   private:
     int width_, height_;
     std::vector<Sample> samples_;

@@ -26,14 +26,13 @@ RayCounts SharedBatches::trace(std::span<SampleBatch> batches, const std::functi
     return trace_own(batches, is_over);
 }
 
-void SharedBatches::predict_by(NearbyLight nearby) {
+void SharedBatches::predict_by(int width, int height, std::vector<NearbyLight::Sample> samples) {
     if (ranks_) {
-        Chunk chunk{.width = nearby.width(), .height = nearby.height()};
+        Chunk chunk{.width = width, .height = height};
         broadcast(*ranks_, std::span(&chunk, 1));
-        std::vector<NearbyLight::Sample> samples = nearby.samples();
         broadcast(*ranks_, std::span(samples));
     }
-    nearby_.emplace(std::move(nearby));
+    nearby_.emplace(width, height, std::move(samples));
 }
 
 void SharedBatches::receive_prediction(int width, int height) {

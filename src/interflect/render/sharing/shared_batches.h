@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "interflect/base/threads/parallel.h"
 #include "interflect/base/threads/stop_request.h"
@@ -40,7 +41,8 @@ class SharedBatches {
     /// @param is_limited  Whether the other ranks omit tiles after PictureOptions::time.
     RayCounts trace(std::span<SampleBatch> batches, const std::function<bool()>& is_over, bool is_limited);
     /// Predicts the light of first hits by the samples around them, in later calls of trace().
-    void predict_by(NearbyLight nearby);
+    /// @param samples  Those of NearbyLight.
+    void predict_by(int width, int height, std::vector<NearbyLight::Sample> samples);
     /// Replaces the virtual lights for later batches. Returns the number of rays for this; 0 without virtual lights.
     std::int64_t renew_virtual_lights();
     /// Ends help() in the other ranks, and waits until all of them have finished.
