@@ -68,6 +68,11 @@ struct LightmapOptions {
     std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
     bool groups =
         false;  ///< Whether to add images of each light group, with the same coordinates; they sum to the total.
+    /// Patterns of names of objects (see LightGroup) or materials whose light is computed anew in an existing file; all
+    /// other texels keep their bytes. The file is an earlier export of the same layout with the same `content`,
+    /// `groups` and light groups, and `image` is .exr. Its exposure and scale stay; ExportOptions::exposure is ignored.
+    /// Empty: all light is computed.
+    std::vector<std::string> update;
 };
 
 /// Options of export_solution().
@@ -113,9 +118,10 @@ const ExportFormat& require_export_format(const std::filesystem::path& path);
 /// complete. The same arguments give the same bytes.
 /// @return  The files that were written.
 /// @throws InputError for an unknown extension, options out of range or unsupported by the format, lightmaps of light
-///         groups for a solution without groups, lightmaps beyond LightmapOptions::max_bytes, a path that cannot be
-///         written, and a solution of another scene; Stopped if ExportOptions::monitor ends it before each texel and
-///         vertex has some light, or each probe all of it; std::runtime_error if writing fails.
+///         groups for a solution without groups, lightmaps beyond LightmapOptions::max_bytes, an update of a file that
+///         is missing or has another layout, a path that cannot be written, and a solution of another scene; Stopped if
+///         ExportOptions::monitor ends it before each texel and vertex has some light, or each probe all of it;
+///         std::runtime_error if writing fails.
 std::vector<std::filesystem::path> export_solution(const std::filesystem::path& path, const Scene& scene,
                                                    const Solution& solution, const ExportOptions& options = {});
 

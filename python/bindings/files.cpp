@@ -178,6 +178,7 @@ std::vector<std::filesystem::path> export_light(const SharedLight& light, const 
         take(remaining, "keep_file", texels.keep_file);
         take(remaining, "keep_lights", texels.keep_lights);
         take(remaining, "groups", texels.groups);
+        take(remaining, "update", texels.update);
         take(remaining, "content", content);
         if (content != "irradiance" && content != "radiance")
             throw InputError(fmt::format("content: expected irradiance or radiance, found '{}'", content));

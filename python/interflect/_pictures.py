@@ -198,16 +198,20 @@ def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: 
         options: up, shading (smooth, hybrid, gather), samples, seed. In vertices: max_error, min_edge, max_edge,
             max_triangles, and for .ply and .obj polygons. In lightmaps: texels_per_metre, densities (a
             dictionary of patterns of names and their texels per metre), max_size, gutter, image, own_charts, keep_file,
-            keep_lights, groups, content, denoise (as of render(); default: "own"). For probes: spacing, rays.
+            keep_lights, groups, content, denoise (as of render(); default: "own"), update (a list of patterns of
+            names, whose light is computed anew in the file; without exposure). For probes: spacing, rays.
 
     Returns:
         The files that were written. Features that the format lacks are reported by warnings.warn().
 
     Raises:
-        InputError: for an unknown extension and options out of range.
+        InputError: for an unknown extension, options out of range and a file that cannot be updated.
         TypeError: for an unknown option.
     """
-    if exposure is None and Path(path).suffix in COLOUR_FORMATS:
+    if options.get("update"):
+        if exposure is not None:
+            raise InputError("exposure: an update keeps the exposure of its file")
+    elif exposure is None and Path(path).suffix in COLOUR_FORMATS:
         exposure = _core.export_exposure(solution, threads)
     with reporting(progress, "exporting") as report:
         return _core.export_solution(solution, path, lightmap=lightmap, exposure=exposure or 0, threads=threads,

@@ -69,13 +69,19 @@ def plates():
 
 
 class LitFiles(command.CommandTest):
-    def lit(self, glb, name="lit", rays="20k", **options):
+    def lit(self, glb, name="lit", rays="20k", exposure=0, **options):
         """Solves a scene and adds a lightmap to its file. Returns the paths of both."""
         glb.write(self.folder / f"{name}-source.glb")
         self.interflect("solve", f"{name}-source.glb", "--rays", rays, "-o", f"{name}.h5")
         solution = ifl.open_solution(self.folder / f"{name}.h5")
-        ifl.export(solution, self.folder / f"{name}.glb", lightmap=True, exposure=0, **options)
+        ifl.export(solution, self.folder / f"{name}.glb", lightmap=True, exposure=exposure, **options)
         return self.folder / f"{name}-source.glb", self.folder / f"{name}.glb"
+
+    def picture(self, file, texture):
+        view = file.json["bufferViews"][file.json["images"][file.json["textures"][texture]["source"]]["bufferView"]]
+        path = self.folder / "picture.png"
+        path.write_bytes(file.binary[view.get("byteOffset", 0) :][: view["byteLength"]])
+        return ifl.read_image(path)
 
     def assert_exact(self, path):
         """Compares with H = I cos / r^2. A texel is 5 cm wide at 1.5 m or more from the light: within 2%, 4 times as
@@ -255,12 +261,6 @@ class File(LitFiles):
         np.testing.assert_allclose(found[bright], light[bright], rtol=0.01)
         self.assertAlmostEqual(float(encoded(gains).max()), 1, places=5)
 
-    def picture(self, file, texture):
-        view = file.json["bufferViews"][file.json["images"][file.json["textures"][texture]["source"]]["bufferView"]]
-        path = self.folder / "picture.png"
-        path.write_bytes(file.binary[view.get("byteOffset", 0) :][: view["byteLength"]])
-        return ifl.read_image(path)
-
     def test_is_solved_and_lit_again_as_the_author_s(self):
         glb = plates()
         white = {"baseColorFactor": [0.5, 0.5, 0.5, 1], "metallicFactor": 0}
@@ -310,6 +310,41 @@ class File(LitFiles):
         solution = ifl.open_solution(self.folder / "plates.h5")
         with self.assertWarnsRegex(ifl.Warning, "another unit"):
             ifl.export(solution, self.folder / "lit.glb", lightmap=True)
+
+
+class Update(LitFiles):
+    def pictures(self, file):
+        """Returns the light and its gains, in which a linear value is a byte."""
+        lightmap = file.json["materials"][0]["extensions"]["MOZ_lightmap"]
+        return lightmap, [self.picture(file, texture) for texture in (lightmap["index"], lightmap["extras"]["gain"]["index"])]
+
+    def test_changes_the_texels_of_its_objects_alone(self):
+        """A brighter lamp, beyond the range of the images. Seen to fail with the scale or stops of the new light."""
+        path = self.lit(plates(), exposure=-1)[1]
+        before, light = Glb.read(path), ifl.read_image(self.folder / "lit.lightmap-0.exr")
+        brighter = plates()
+        brighter.json["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = 3 * INTENSITY
+        brighter.write(self.folder / "lit-source.glb")
+        self.interflect("solve", "lit-source.glb", "--rays", "20k", "-o", "lit.h5")
+        with self.assertWarnsRegex(ifl.Warning, "exceeds the range"):
+            ifl.export(ifl.open_solution(self.folder / "lit.h5"), path, lightmap=True, update=["group.nested", "pane"])
+        after = Glb.read(path)
+        new_light = ifl.read_image(self.folder / "lit.lightmap-0.exr")
+        changed = (new_light != light).any(axis=2)
+        nested = 20 * 20
+        self.assertGreater(changed.sum(), nested)
+        self.assertLess(changed.sum(), 0.5 * changed.size)
+        bright = changed & (light[:, :, 1] > 50)
+        np.testing.assert_allclose(new_light[bright], 3 * light[bright], rtol=0.02)
+        (encoding, old), (same_encoding, new) = self.pictures(before), self.pictures(after)
+        self.assertEqual(same_encoding, encoding)
+        for a, b in zip(old, new, strict=True):
+            np.testing.assert_array_equal(a[~changed], b[~changed])
+        self.assertGreater((old[0] != new[0]).sum(), 0)
+
+    def test_keeps_the_exposure(self):
+        with self.assertRaisesRegex(ifl.InputError, "exposure"):
+            self.lit(plates(), update=["nested"])
 
 
 class Density(LitFiles):

@@ -196,8 +196,9 @@ void run(const ExportArguments& arguments, const CLI::App& command, int& exit_co
     const SolvedScene solved = read_dimmed(arguments);
     refuse_overwriting(solved.scene, {&output, 1});
     ExportOptions options;
+    const bool is_update = !arguments.lightmap.update.empty();
     options.exposure = arguments.exposure.stops;
-    if (arguments.exposure.relative) options.exposure += export_exposure(solved.scene, solved.solution);
+    if (arguments.exposure.relative && !is_update) options.exposure += export_exposure(solved.scene, solved.solution);
     options.up = arguments.up ? V3f(*arguments.up) : up_of(solved.scene);
     options.probes = arguments.probes;
     set_bake(options, arguments, command);
@@ -205,7 +206,8 @@ void run(const ExportArguments& arguments, const CLI::App& command, int& exit_co
     Warnings warnings;
     options.warnings = &warnings;
     for (const auto& path : write_or_explain(arguments.output, solved, options))
-        spdlog::info("{}: exposure {:+.2f}", path.string(), options.exposure);
+        spdlog::info("{}: {}", path.string(),
+                     is_update ? "updated" : fmt::format("exposure {:+.2f}", options.exposure));
     log_warnings(warnings);
     if (is_stop_requested()) exit_code = interrupted;
 }
@@ -294,6 +296,12 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
         command.add_flag("--own-charts", lightmap.own_charts, "Ignore lightmap coordinates of the scene's file"));
     of_lightmap(command.add_flag("--lightmap-groups", lightmap.groups,
                                  "Add unclamped images of each light group alone (see solve --light-groups)"));
+    of_lightmap(command.add_option("--update", lightmap.update,
+                                   "Compute the light of objects or materials with such a name ('*' stands for "
+                                   "anything), and keep the other texels of the existing file"))
+        ->type_name("PATTERN")
+        ->allow_extra_args(false)
+        ->excludes("--exposure");
 }
 
 }  // namespace

@@ -50,6 +50,8 @@ void require_usable(const LightmapOptions& options) {
     require(options.gutter >= 1 && options.gutter <= 64, fmt::format("gutter is {}, expected 1 to 64", options.gutter));
     require(options.image == ".exr" || options.image == ".hdr",
             fmt::format("image is '{}', expected .exr or .hdr", options.image));
+    require(options.update.empty() || options.image == ".exr",
+            "image is .hdr, expected .exr for an update, because it keeps the texels of the images");
 }
 
 void require_usable(const VertexOptions& options) {

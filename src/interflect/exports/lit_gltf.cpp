@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "interflect/exports/authored/patched_gltf.h"
 #include "interflect/exports/authored/source_gltf.h"
@@ -27,17 +28,21 @@ std::vector<ExportedFile> make(const std::filesystem::path& path, const Scene& s
                                const ExportOptions& options, std::string (GltfDocument::*encode)() const) {
     GltfDocument document;
     std::vector<ExportedFile> files;
+    std::optional<EarlierLightmap> read;
+    if (options.lightmap && !options.lightmap->update.empty())
+        read = read_earlier_lightmap(path, *options.lightmap, solution.group_names);
+    const EarlierLightmap* const earlier = read ? &*read : nullptr;
     if (const std::unique_ptr<SourceGltf> source = kept_file(scene, path.parent_path(), options)) {
         try {
             document = source->document();
-            files = add_lightmap(document, *source, path, scene, solution, options);
+            files = add_lightmap(document, *source, path, scene, solution, options, earlier);
         } catch (const nlohmann::json::exception& fault) {  // a fault in a part that the scene reader skips
             throw InputError(scene.files.front(), 0, fmt::format("no valid glTF: {}", fault.what()));
         } catch (const GltfFault& fault) {
             throw InputError(scene.files.front(), 0, fault.what());
         }
     } else if (options.lightmap) {
-        files = add_lightmap(document, path, scene, solution, options);
+        files = add_lightmap(document, path, scene, solution, options, earlier);
     } else {
         add_vertex_light(document, scene, solution, options);
     }

@@ -239,6 +239,8 @@ class Export(CommandTest):
             (("scene.h5", "-o", "room.glb", "--lightmap", "--texels-per-metre", "0"), WRONG_USAGE, "--texels-per-metre"),
             (("scene.h5", "-o", "room.glb", "--up", "0,0,0"), WRONG_USAGE, "up"),
             (("scene.h5", "-o", "room.glb", "--lightmap", "--max-triangles", "9"), WRONG_USAGE, "--max-triangles"),
+            (("scene.h5", "-o", "room.glb", "--lightmap", "--update", "wall"), BAD_INPUT, "is not there"),
+            (("scene.h5", "-o", "room.glb", "--lightmap", "--update", "wall", "--exposure", "1"), WRONG_USAGE, "--exposure"),
             (("scene.h5", "-o", "room.vtu", "--max-triangles", "9"), WRONG_USAGE, "--max-triangles"),
             (("scene.h5", "-o", "room.glb", "--shading", "smooth", "--min-edge", "1"), WRONG_USAGE, "--min-edge"),
             (("scene.h5", "-o", "room.glb", "--shading", "smooth", "--quality", "low"), WRONG_USAGE, "--quality"),

@@ -212,10 +212,15 @@ AuthoredCharts authored_charts(Model model, const AuthoredDensities& densities, 
                                              density ? options_with({{"*", *density}}) : material_options, scene,
                                              warnings));
         }
-        const std::vector<LightmapChart>& charts = result.shapes[found->second].charts;
+        const AuthoredShape& shape = result.shapes[found->second];
         result.objects.push_back({instance->node, found->second, instance->object,
                                   static_cast<std::uint32_t>(result.charts.size()), instance->to_world});
-        result.charts.insert(result.charts.end(), charts.begin(), charts.end());
+        for (LightmapChart chart : shape.charts) {
+            const Mesh& mesh = model.meshes[shape.triangles[chart.patches.front().patch].mesh];
+            chart.object = instance->object;
+            chart.is_updated = is_updated(object, model.materials[mesh.material].name, options);
+            result.charts.push_back(std::move(chart));
+        }
     }
     result.model = std::move(model);
     return result;

@@ -242,7 +242,8 @@ bool uses_draco(const Json& file) {
 }  // namespace
 
 std::vector<ExportedFile> add_lightmap(GltfDocument& document, SourceGltf& source, const std::filesystem::path& path,
-                                       const Scene& scene, const Solution& solution, const ExportOptions& options) {
+                                       const Scene& scene, const Solution& solution, const ExportOptions& options,
+                                       const EarlierLightmap* earlier) {
     const LightmapOptions& chosen = *options.lightmap;
     Warnings ignored;
     Warnings& warnings = options.warnings ? *options.warnings : ignored;
@@ -255,10 +256,10 @@ std::vector<ExportedFile> add_lightmap(GltfDocument& document, SourceGltf& sourc
         return pack_groups(charts, authored.first_charts(), chosen.gutter, chosen.max_size);
     };
     const MoveTexels move = [&](std::size_t chart, std::span<TexelPlace> places) { mover.move(chart, places); };
-    const BakedImages baked = bake_charts(authored.charts, pack, move, scene, solution, options);
+    const BakedImages baked = bake_charts(authored.charts, pack, move, scene, solution, options, earlier);
     warn_of_backs(document.json, authored, mover, warnings);
 
-    LightmapImages images = add_lightmap_images(document, path, baked, solution.group_names, options);
+    LightmapImages images = add_lightmap_images(document, path, baked, solution.group_names, options, earlier);
     LitMaterials materials(document, images);
     LitMeshes meshes(document, source, authored, baked, materials);
     for (const AuthoredObject& object : authored.objects) meshes.light(object);

@@ -243,9 +243,13 @@ LightmapChart chart_of(const Scene& scene, FlatPatches patches, const LightmapOp
         for (const Imath::V2d& corner : flat.outline())
             chart.size = {std::max(chart.size.x, corner.x), std::max(chart.size.y, corner.y)};
     const int most = options.max_size - 2 * options.gutter;
-    const float density = density_of(scene, chart.patches.front().patch, options);
+    const PatchIndex first = chart.patches.front().patch;
+    const float density = density_of(scene, first, options);
     chart.columns = texels_along(chart.size.x, density, most);
     chart.rows = texels_along(chart.size.y, density, most);
+    const Patch& patch = scene.patches[first];
+    chart.object = patch.object;
+    chart.is_updated = is_updated(scene.objects[patch.object], scene.materials[patch.material].name, options);
     return chart;
 }
 
@@ -278,13 +282,23 @@ std::vector<FlatPatches> smooth_layouts(const Scene& scene, const std::vector<bo
     return unfolded(scene, smooth.corners, joints, conflicts, flat_pieces(scene, shown, neighbourhood, conflicts), gap);
 }
 
+bool matches_surface(const std::string& pattern, const std::string& object, const std::string& material) {
+    return matches_object(pattern, object) || matches(pattern, material);
+}
+
 }  // namespace
+
+bool is_updated(const std::string& object, const std::string& material, const LightmapOptions& options) {
+    return options.update.empty() ||
+           std::any_of(options.update.begin(), options.update.end(),
+                       [&](const std::string& pattern) { return matches_surface(pattern, object, material); });
+}
 
 float density_of(const Scene& scene, PatchIndex patch, const LightmapOptions& options) {
     const std::string& object = scene.objects[scene.patches[patch].object];
     const std::string& material = scene.materials[scene.patches[patch].material].name;
     for (const auto& [pattern, texels_per_metre] : options.densities)
-        if (matches_object(pattern, object) || matches(pattern, material)) return texels_per_metre;
+        if (matches_surface(pattern, object, material)) return texels_per_metre;
     return options.texels_per_metre;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "interflect/export.h"
@@ -15,12 +16,17 @@ struct LightmapChart {
     FlatPatches patches;  ///< Coordinates along columns and rows from texel (0, 0) [m].
     Imath::V2d size;      ///< Size of the rectangle [m].
     int columns = 2, rows = 2;
+    std::uint32_t object = 0;         ///< Index into Scene::objects of the solved scene.
+    bool is_updated = true;           ///< Whether its light is computed (LightmapOptions::update).
     int page = 0, left = 0, top = 0;  ///< Image and position of texel (0, 0), set by pack_charts().
 
     Imath::V2d spacing() const { return {size.x / (columns - 1), size.y / (rows - 1)}; }  ///< [m]
     /// Returns the texture coordinate of a point of the chart [m]; (0, 0) is the upper left corner of its image.
     V2f coordinate(const Imath::V2d& at, const std::vector<Image>& images) const;
 };
+
+/// Returns whether the light of surfaces with these names is computed (LightmapOptions::update).
+bool is_updated(const std::string& object, const std::string& material, const LightmapOptions& options);
 
 /// Returns the texels per metre on a patch.
 float density_of(const Scene& scene, PatchIndex patch, const LightmapOptions& options);

@@ -98,9 +98,10 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Material&
 }  // namespace
 
 std::vector<ExportedFile> add_lightmap(GltfDocument& document, const std::filesystem::path& path, const Scene& scene,
-                                       const Solution& solution, const ExportOptions& options) {
-    const Lightmap lightmap = make_lightmap(scene, solution, options);
-    LightmapImages images = add_lightmap_images(document, path, lightmap, solution.group_names, options);
+                                       const Solution& solution, const ExportOptions& options,
+                                       const EarlierLightmap* earlier) {
+    const Lightmap lightmap = make_lightmap(scene, solution, options, earlier);
+    LightmapImages images = add_lightmap_images(document, path, lightmap, solution.group_names, options, earlier);
     const ElementForest patches(scene, scene.patches.size());
     ElementMesh mesh(scene, patches, std::vector<Rgb>(scene.patches.size(), Rgb(0)));
     GltfTextures textures(document, scene);

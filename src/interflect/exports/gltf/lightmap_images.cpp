@@ -46,6 +46,22 @@ std::string name_of_image(const std::filesystem::path& path, std::size_t page, s
     return fmt::format("{}-group-{}", name_of_image(path, page), group);
 }
 
+/// Sets the encoding and the stops. An update keeps those of the file, because other bytes would represent the same
+/// light; it chooses the stops of a file without gains.
+void set_encoding(LightmapImages& result, const std::vector<Image>& images, const ExportOptions& options,
+                  const EarlierLightmap* earlier) {
+    const LightmapContent content = options.lightmap->content;
+    result.encoding = earlier
+                          ? LightmapEncoding{content, earlier->exposure, earlier->scale}
+                          : LightmapEncoding{content, options.exposure, scale_of(images, content, options.exposure)};
+    if (content == LightmapContent::radiance) return;
+    const float stops = std::max(0.0f, std::log2(largest_texel(images) / result.encoding.scale));
+    result.stops = earlier && earlier->stops > 0 ? earlier->stops : stops;
+    if (stops > result.stops && options.warnings)
+        options.warnings->add("lightmap-range",
+                              "some light exceeds the range of the earlier lightmap: its 8-bit images show the limit");
+}
+
 /// Adds an image of irradiance and, if a texel exceeds the scale, an image of gains, 2^(stops * byte / 255). Gains are
 /// rounded up: a texel divided by its gain is at most the scale.
 void add_irradiance(GltfDocument& document, const Image& image, const std::string& name, LightmapImages& images) {
@@ -54,7 +70,9 @@ void add_irradiance(GltfDocument& document, const Image& image, const std::strin
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         const Rgb texel = image.pixels[i] / images.encoding.scale;
         const float over = largest_channel(texel);
-        const float byte = over > 1 ? std::ceil(std::log2(over) / images.stops * 255) : 0;
+        // An update may exceed the stops of its file
+        const float byte =
+            over > 1 && images.stops > 0 ? std::min(255.0f, std::ceil(std::log2(over) / images.stops * 255)) : 0;
         encoded.pixels[i] = within_display_range(texel / std::exp2(images.stops * byte / 255));
         gains.pixels[i] = Rgb(srgb_decode(byte / 255));  // cancels the sRGB encoding of the codec
         has_gain |= byte > 0;
@@ -77,11 +95,11 @@ std::string encode_beside(const Image& image, const std::string& extension, cons
     return codecs::encode_exr(image, metadata, {});
 }
 
-Json description_of(const BakedImages& baked, const LightmapEncoding& encoding,
-                    const std::vector<ExportedFile>& beside) {
+Json description_of(const BakedImages& baked, const LightmapImages& encoded) {
+    const LightmapEncoding& encoding = encoded.encoding;
     const bool holds_irradiance = encoding.content == LightmapContent::irradiance;
     Json images = Json::array();
-    for (const ExportedFile& file : beside) images.push_back(escaped(file.path.filename().string()));
+    for (const ExportedFile& file : encoded.files) images.push_back(escaped(file.path.filename().string()));
     return {{"exposure", encoding.exposure},
             {"lightmap",
              {{"quantity", holds_irradiance ? "irradiance" : "radiance"},
@@ -89,9 +107,11 @@ Json description_of(const BakedImages& baked, const LightmapEncoding& encoding,
               {"encoding",
                "sRGB, 8 bit; a linear value of 1 stands for `scale`; brighter texels are divided by their gain"},
               {"scale", encoding.scale},
+              {"stops", encoded.stops},
               {"unclamped", images},
               {"used", baked.used},
-              {"covered", baked.covered}}}};
+              {"covered", baked.covered},
+              {"layout", baked.layout}}}};
 }
 
 Json add_groups(const std::filesystem::path& path, const BakedImages& baked, const std::vector<std::string>& names,
@@ -122,13 +142,13 @@ Json moz_lightmap(const LightmapImages& images, int page, int set) {
 }
 
 LightmapImages add_lightmap_images(GltfDocument& document, const std::filesystem::path& path, const BakedImages& baked,
-                                   const std::vector<std::string>& groups, const ExportOptions& options) {
+                                   const std::vector<std::string>& groups, const ExportOptions& options,
+                                   const EarlierLightmap* earlier) {
     const LightmapOptions& chosen = *options.lightmap;
     LightmapImages result;
-    result.encoding = {chosen.content, options.exposure, scale_of(baked.images, chosen.content, options.exposure)};
+    set_encoding(result, baked.images, options, earlier);
     const bool holds_irradiance = chosen.content == LightmapContent::irradiance;
     const std::string quantity = holds_irradiance ? "irradiance [lm/m^2]" : "radiance [cd/m^2]";
-    if (holds_irradiance) result.stops = std::max(0.0f, std::log2(largest_texel(baked.images) / result.encoding.scale));
     const auto add_image = holds_irradiance ? add_irradiance : add_radiance;
     for (std::size_t page = 0; page < baked.images.size(); ++page) {
         const std::string name = name_of_image(path, page);
@@ -136,7 +156,7 @@ LightmapImages add_lightmap_images(GltfDocument& document, const std::filesystem
         result.files.push_back(
             {path.parent_path() / (name + chosen.image), encode_beside(baked.images[page], chosen.image, quantity)});
     }
-    Json description = description_of(baked, result.encoding, result.files);
+    Json description = description_of(baked, result);
     if (!baked.groups.empty())
         description["lightmap"]["groups"] = add_groups(path, baked, groups, chosen.image, quantity, result.files);
     Json& extras = document.json["asset"]["extras"];

@@ -38,8 +38,10 @@ Json moz_lightmap(const LightmapImages& images, int page, int set);
 
 /// Adds the images to the document, describes them in `asset.extras.interflect`, and
 /// encodes the unclamped ones.
-/// @param path  Path of the document. @param groups  Names of the solution's light groups.
+/// @param path     Path of the document. @param groups  Names of the solution's light groups.
+/// @param earlier  Lightmap whose encoding is kept; null: the encoding follows from the images.
 LightmapImages add_lightmap_images(GltfDocument& document, const std::filesystem::path& path, const BakedImages& baked,
-                                   const std::vector<std::string>& groups, const ExportOptions& options);
+                                   const std::vector<std::string>& groups, const ExportOptions& options,
+                                   const EarlierLightmap* earlier = nullptr);
 
 }  // namespace interflect::detail

@@ -126,7 +126,6 @@ class LightmapTexels {
             images[position.page].at(position.column, position.row) =
                 texel_value(options_.content, scene, points_[point], irradiance[point]);
     }
-    std::size_t count() const { return texels_.size(); }
     std::int64_t count_inside() const { return texels_inside_; }
 
   private:
@@ -163,14 +162,15 @@ void add_images(const std::vector<Image>& images, std::vector<Image>& sum) {
 
 /// Evaluates each light group alone. The lightmap is the exact sum of the images of all groups.
 void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Solution& solution,
-                     const ExportOptions& options, BakedImages& baked) {
+                     const ExportOptions& options, const EarlierLightmap* earlier, BakedImages& baked) {
     Ranks* const ranks = options.monitor.ranks;
     const std::size_t count = solution.group_names.size();
     for (std::size_t g = 0; g < count; ++g) {
         const LightOfGroup group = light_of_group(scene, solution, g);
         const auto fraction = [&](std::size_t i) { return static_cast<double>(i) / static_cast<double>(count); };
         const Monitor monitor = monitor_section(options.monitor, fraction(g), fraction(g + 1));
-        baked.groups.push_back(baked.images);  // these images are black until all groups are evaluated
+        // The total images are black until all groups are evaluated
+        baked.groups.push_back(earlier ? earlier->groups[g] : baked.images);
         // The other ranks make the same scene and solution, and trace a share of the rays until end_shared_light()
         give_order(ranks, {.kind = LightOrder::Kind::group, .group = g});
         try {
@@ -242,8 +242,13 @@ void require_lightmap_memory(const TexelCounts& texels, const ExportOptions& opt
 }  // namespace
 
 BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pack, const MoveTexels& move_texels,
-                        const Scene& scene, const Solution& solution, const ExportOptions& options) {
+                        const Scene& scene, const Solution& solution, const ExportOptions& options,
+                        const EarlierLightmap* earlier) {
     const LightmapOptions& lightmap = *options.lightmap;
+
+    if (std::none_of(charts.begin(), charts.end(), [](const LightmapChart& chart) { return chart.is_updated; }) &&
+        !charts.empty())
+        throw InputError("lightmap: no object or material has a name that matches update");
 
     // Check a lower bound of the memory first, because packing many charts takes minutes
     TexelCounts texel_counts;
@@ -255,10 +260,16 @@ BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pa
     texel_counts.images = texels_of_images(sizes);
     require_lightmap_memory(texel_counts, options, solution.group_names.size());
     BakedImages baked;
-    for (const Imath::V2i& size : sizes) baked.images.emplace_back(size.x, size.y);
+    baked.layout = layout_of(charts, scene, lightmap);
+    if (earlier) require_same_layout(*earlier, baked.layout, sizes);
+    if (earlier && !lightmap.groups)
+        baked.images = earlier->images;
+    else
+        for (const Imath::V2i& size : sizes) baked.images.emplace_back(size.x, size.y);
 
     LightmapTexels texels(lightmap);
     for (std::size_t i = 0; i < charts.size(); ++i) {
+        if (!charts[i].is_updated) continue;
         std::vector<TexelPlace> places = places_of(charts[i], lightmap.gutter);
         move_texels(i, places);
         texels.add_chart(charts[i], places);
@@ -266,13 +277,13 @@ BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pa
     texels.assign_hidden_texels(scene);
 
     if (lightmap.groups)
-        evaluate_groups(texels, scene, solution, options, baked);
+        evaluate_groups(texels, scene, solution, options, earlier, baked);
     else  // the other ranks already have this scene and solution
         texels.evaluate(scene, BakedLight(scene, solution, options.bake, texel_sampling), options.monitor,
                         baked.images);
     const double all_texels = std::max(1.0, texel_counts.images);  // no division by 0 without charts
-    baked.used = static_cast<double>(texels.count()) / all_texels;
-    baked.covered = static_cast<double>(texels.count_inside()) / all_texels;
+    baked.used = texel_counts.charts / all_texels;
+    baked.covered = earlier ? earlier->covered : static_cast<double>(texels.count_inside()) / all_texels;
     return baked;
 }
 

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "interflect/export.h"
+#include "interflect/exports/lightmap/earlier_lightmap.h"
 #include "interflect/exports/lightmap/texels.h"
+#include "interflect/exports/records/json_text.h"
 #include "interflect/image.h"
 
 namespace interflect::detail {
@@ -14,6 +16,7 @@ namespace interflect::detail {
 struct BakedImages {
     std::vector<Image> images;               ///< Irradiance [lm/m^2] or radiance [cd/m^2]; 0 between charts.
     std::vector<std::vector<Image>> groups;  ///< Images of each light group, [group][image]; or empty.
+    Json layout;                             ///< Description of the layout (layout_of()).
     double used = 0;                         ///< Fraction of the texels of all images that are in charts and gutters.
     double covered = 0;                      ///< Fraction of the texels of all images whose centres are on patches.
 };
@@ -31,8 +34,10 @@ using MoveTexels = std::function<void(std::size_t chart, std::span<TexelPlace> p
 /// light of hybrid shading is the mean over the texel.
 /// @param charts   Receive their positions in the images.
 /// @param options  Must include a lightmap.
-/// @throws InputError above LightmapOptions::max_bytes; Stopped
+/// @param earlier  Lightmap whose other texels are kept (LightmapOptions::update); null: all light is computed.
+/// @throws InputError above LightmapOptions::max_bytes, and for an earlier lightmap of another layout; Stopped
 BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pack, const MoveTexels& move_texels,
-                        const Scene& scene, const Solution& solution, const ExportOptions& options);
+                        const Scene& scene, const Solution& solution, const ExportOptions& options,
+                        const EarlierLightmap* earlier = nullptr);
 
 }  // namespace interflect::detail

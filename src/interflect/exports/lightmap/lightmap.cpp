@@ -27,7 +27,8 @@ V2f Lightmap::coordinate(PatchIndex patch, Parameters at) const {
     return chart.coordinate(chart.patches[index_in_chart[patch]].point(at), images);
 }
 
-Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options) {
+Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options,
+                       const EarlierLightmap* earlier) {
     const LightmapOptions& lightmap_options = *options.lightmap;
     require_positive_densities(lightmap_options);
     std::vector<LightmapChart> charts =
@@ -37,7 +38,7 @@ Lightmap make_lightmap(const Scene& scene, const Solution& solution, const Expor
     };
     // The charts contain patches of the solved scene already
     const MoveTexels keep_places = [](std::size_t, std::span<TexelPlace>) {};
-    BakedImages baked = bake_charts(charts, pack, keep_places, scene, solution, options);
+    BakedImages baked = bake_charts(charts, pack, keep_places, scene, solution, options, earlier);
     const std::vector<std::uint32_t> no_indices(scene.patches.size(), none);
     Lightmap lightmap{std::move(baked), std::move(charts), no_indices, no_indices};
     for (std::uint32_t i = 0; i < lightmap.charts.size(); ++i) {

@@ -21,7 +21,9 @@ struct Lightmap : BakedImages {
     int page(PatchIndex patch) const { return charts[chart_of_patch[patch]].page; }
 };
 
-/// Makes charts of the shown patches (shown_patches()) and bakes them. @param options  Must include a lightmap.
-Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options);
+/// Makes charts of the shown patches (shown_patches()) and bakes them.
+/// @param options  Must include a lightmap. @param earlier  As of bake_charts().
+Lightmap make_lightmap(const Scene& scene, const Solution& solution, const ExportOptions& options,
+                       const EarlierLightmap* earlier = nullptr);
 
 }  // namespace interflect::detail

@@ -1,0 +1,120 @@
+// Updates of some objects in an existing lightmap (LightmapOptions::update). tests/python/lit_files_test.py has those
+// in the glTF file of the scene.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "interflect/export.h"
+#include "tests/exports/lightmap/lightmaps.h"
+#include "tests/support/scenes/scenes.h"
+
+namespace interflect {
+
+using namespace detail;
+namespace {
+
+using namespace lightmap_testing;
+using testing::HasSubstr;
+
+class LightmapUpdate : public testing::Test {
+  protected:
+    const std::filesystem::path folder_ =
+        std::filesystem::path(testing::TempDir()) /
+        (std::string("update-") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    Scene scene_;
+    ExportOptions options_ = at(10);
+
+    /// A wall of 2 x 1 m, and a lamp of 1 x 1 m that faces it.
+    LightmapUpdate() {
+        std::filesystem::create_directories(folder_);
+        const std::uint32_t material = testing_support::add_material(scene_, Rgb(0.5f), Rgb(0));
+        scene_.objects = {"", "room.wall", "lamp"};
+        const PatchIndex wall = testing_support::add_rectangle(scene_, V3f(0), V3f(2, 0, 0), V3f(0, 1, 0), material);
+        const PatchIndex lamp =
+            testing_support::add_rectangle(scene_, V3f(1, 0, 1), V3f(0, 1, 0), V3f(1, 0, 0), material);
+        scene_.patches[wall].object = 1;
+        scene_.patches[lamp].object = 2;
+    }
+    ~LightmapUpdate() override { std::filesystem::remove_all(folder_); }
+
+    void write(const Solution& solution) { export_solution(folder_ / "lit.glb", scene_, solution, options_); }
+    Image light(const char* name = "lit.lightmap-0.exr") const { return read_image(folder_ / name); }
+    std::string refusal(const Solution& solution) {
+        try {
+            write(solution);
+        } catch (const InputError& refused) {
+            return refused.what();
+        }
+        return "";
+    }
+};
+
+/// Returns the number of texels of each value.
+std::map<float, int> counts(const Image& image) {
+    std::map<float, int> result;
+    for (const Rgb& texel : image.pixels) ++result[texel.y];
+    return result;
+}
+
+/// Seen to fail if all charts are computed.
+TEST_F(LightmapUpdate, ChangesTheTexelsOfItsObjectsAlone) {
+    write(uniform(scene_, 100));
+    const Image before = light();
+    options_.lightmap->update = {"la*"};
+    write(uniform(scene_, 300));
+    const Image after = light();
+    ASSERT_EQ(after.pixels.size(), before.pixels.size());
+    constexpr int lamp_texels = (11 + 4) * (11 + 4), wall_texels = (21 + 4) * (11 + 4);  // with gutters of 2
+    const std::map<float, int> values = counts(after);
+    EXPECT_EQ(values.at(300), lamp_texels);
+    EXPECT_EQ(values.at(100), wall_texels);
+    options_.lightmap->update = {"room"};  // an enclosing object
+    write(uniform(scene_, 300));
+    EXPECT_EQ(counts(light()).at(300), lamp_texels + wall_texels);
+}
+
+/// The images of each group and their sum keep the other texels. Seen to fail if the groups start black.
+TEST_F(LightmapUpdate, KeepsTheTexelsOfLightGroups) {
+    const auto of_groups = [&](float a, float b) {
+        Solution solution = uniform(scene_, a + b);
+        solution.group_names = {"a", "b"};
+        for (const float light : {a, b}) solution.groups.push_back(uniform(scene_, light).irradiance);
+        return solution;
+    };
+    scene_.light_groups = {{"a", "left"}, {"b", "right"}};
+    options_.lightmap->groups = true;
+    write(of_groups(1, 2));
+    options_.lightmap->update = {"lamp"};
+    write(of_groups(10, 20));
+    EXPECT_EQ(counts(light("lit.lightmap-0-group-1.exr")).count(2), 1);
+    const std::map<float, int> values = counts(light());
+    EXPECT_EQ(values.count(3), 1);
+    EXPECT_EQ(values.count(30), 1);
+}
+
+TEST_F(LightmapUpdate, OfAnotherLayoutNamesTheDifference) {
+    options_.lightmap->update = {"lamp"};
+    EXPECT_THAT(refusal(uniform(scene_, 1)), HasSubstr("not there"));
+    options_.lightmap->update.clear();
+    write(uniform(scene_, 1));
+
+    options_.lightmap->update = {"chair"};
+    EXPECT_THAT(refusal(uniform(scene_, 1)), HasSubstr("no object or material"));
+    options_.lightmap->update = {"lamp"};
+    options_.lightmap->gutter = 3;
+    EXPECT_THAT(refusal(uniform(scene_, 1)), HasSubstr("gutter is 2, not 3"));
+    options_.lightmap->gutter = 2;
+    options_.lightmap->content = LightmapContent::radiance;
+    EXPECT_THAT(refusal(uniform(scene_, 1)), HasSubstr("quantity is \"irradiance\", not \"radiance\""));
+    options_.lightmap->content = LightmapContent::irradiance;
+    for (V3f& x : scene_.vertices) x *= 2;
+    EXPECT_THAT(refusal(uniform(scene_, 1)), HasSubstr("other places"));
+    std::filesystem::remove(folder_ / "lit.lightmap-0.exr");
+    EXPECT_THAT(refusal(uniform(scene_, 1)), HasSubstr("lit.lightmap-0.exr"));
+}
+
+}  // namespace
+}  // namespace interflect
