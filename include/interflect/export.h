@@ -2,6 +2,8 @@
 /// Writes a solved scene for other programs (lit glTF, lightmaps, meshes, probes), or a scene for other renderers.
 #pragma once
 
+#include <ImathVec.h>
+
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -43,12 +45,27 @@ struct VertexOptions {
 enum class LightmapContent {
     irradiance,  ///< H: the renderer multiplies it by the reflectance over pi, which keeps textures sharp.
     radiance,    ///< L = (M + rho H) / pi, which any renderer can show directly.
+    /// No light: squares of 8 x 8 texels on unlit materials, whose colour shows the resolution: violet for a quarter of
+    /// LightmapOptions::texels_per_metre or less, teal for equality, yellow for four times that or more.
+    density,
 };
 
 /// Resolution of lightmaps on some surfaces.
 struct TexelDensity {
     std::string pattern;     ///< Pattern of object names (see LightGroup) or material names.
     float texels_per_metre;  ///< >= 0; 0: no lightmap, possible only in the scene's own glTF file.
+};
+
+/// Resolution of a lightmap on the surfaces of an object where it is lowest, relative to the requested one.
+struct ObjectDensity {
+    std::string object;
+    float requested, obtained;  ///< [texels/m]
+};
+
+/// Size of a lightmap.
+struct LightmapSummary {
+    std::vector<Imath::V2i> sizes;         ///< Size of each image [texels].
+    std::vector<ObjectDensity> densities;  ///< One entry per object with a lightmap.
 };
 
 struct LightmapOptions {
@@ -87,9 +104,10 @@ struct ExportOptions {
     /// Whether .ply and .obj files contain convex polygons of up to dozens of corners in place of triangles. Some
     /// readers refuse or skip such polygons.
     bool polygons = false;
-    ProbeOptions probes;           ///< For formats that store probes instead of surfaces.
-    Monitor monitor;               ///< Monitors the light of texels, vertices and probes.
-    Warnings* warnings = nullptr;  ///< Receives features that could not be exported unchanged; may be null.
+    ProbeOptions probes;                 ///< For formats that store probes instead of surfaces.
+    Monitor monitor;                     ///< Monitors the light of texels, vertices and probes.
+    Warnings* warnings = nullptr;        ///< Receives features that could not be exported unchanged; may be null.
+    LightmapSummary* summary = nullptr;  ///< Receives the size of the lightmap; may be null.
 };
 
 /// A file of an export.
@@ -115,7 +133,8 @@ extern const std::span<const ExportFormat> export_formats;
 const ExportFormat& require_export_format(const std::filesystem::path& path);
 
 /// Writes a solved scene in the format of the extension of `path`. Files appear under their names when all are
-/// complete. The same arguments give the same bytes.
+/// complete. The same arguments give the same bytes. LightmapContent::density needs no light: `solution` may be
+/// Solution() if the scene's own glTF file is kept.
 /// @return  The files that were written.
 /// @throws InputError for an unknown extension, options out of range or unsupported by the format, lightmaps of light
 ///         groups for a solution without groups, lightmaps beyond LightmapOptions::max_bytes, an update of a file that

@@ -128,6 +128,13 @@ V3f up_of(const Scene& scene, Warnings& warnings) {
     return {0, 0, 1};
 }
 
+LightmapContent content_of(const std::string& name) {
+    if (name == "irradiance") return LightmapContent::irradiance;
+    if (name == "radiance") return LightmapContent::radiance;
+    if (name == "density") return LightmapContent::density;
+    throw InputError(fmt::format("content: expected irradiance, radiance or density, found '{}'", name));
+}
+
 std::vector<std::filesystem::path> export_light(const SharedLight& light, const std::filesystem::path& path,
                                                 bool lightmap, int threads, const py::object& progress,
                                                 const py::kwargs& keywords) {
@@ -180,9 +187,7 @@ std::vector<std::filesystem::path> export_light(const SharedLight& light, const 
         take(remaining, "groups", texels.groups);
         take(remaining, "update", texels.update);
         take(remaining, "content", content);
-        if (content != "irradiance" && content != "radiance")
-            throw InputError(fmt::format("content: expected irradiance or radiance, found '{}'", content));
-        if (content == "radiance") texels.content = LightmapContent::radiance;
+        texels.content = content_of(content);
         options.lightmap = texels;
     }
     for (const auto& [name, value] : remaining)

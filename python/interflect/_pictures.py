@@ -198,8 +198,9 @@ def export(solution: _core.Solution, path: str | os.PathLike[str], *, lightmap: 
         options: up, shading (smooth, hybrid, gather), samples, seed. In vertices: max_error, min_edge, max_edge,
             max_triangles, and for .ply and .obj polygons. In lightmaps: texels_per_metre, densities (a
             dictionary of patterns of names and their texels per metre), max_size, gutter, image, own_charts, keep_file,
-            keep_lights, groups, content, denoise (as of render(); default: "own"), update (a list of patterns of
-            names, whose light is computed anew in the file; without exposure). For probes: spacing, rays.
+            keep_lights, groups, content (irradiance, radiance, density), denoise (as of render(); default: "own"), update
+            (a list of patterns of names whose light is computed anew in the file; without exposure). For probes: spacing,
+            rays.
 
     Returns:
         The files that were written. Features that the format lacks are reported by warnings.warn().

@@ -318,16 +318,20 @@ class Update(LitFiles):
         lightmap = file.json["materials"][0]["extensions"]["MOZ_lightmap"]
         return lightmap, [self.picture(file, texture) for texture in (lightmap["index"], lightmap["extras"]["gain"]["index"])]
 
-    def test_changes_the_texels_of_its_objects_alone(self):
-        """A brighter lamp, beyond the range of the images. Seen to fail with the scale or stops of the new light."""
-        path = self.lit(plates(), exposure=-1)[1]
-        before, light = Glb.read(path), ifl.read_image(self.folder / "lit.lightmap-0.exr")
+    def brighten(self, path, update):
+        """Updates objects in three times the light."""
         brighter = plates()
         brighter.json["extensions"]["KHR_lights_punctual"]["lights"][0]["intensity"] = 3 * INTENSITY
         brighter.write(self.folder / "lit-source.glb")
         self.interflect("solve", "lit-source.glb", "--rays", "20k", "-o", "lit.h5")
+        ifl.export(ifl.open_solution(self.folder / "lit.h5"), path, lightmap=True, update=update)
+
+    def test_changes_the_texels_of_its_objects_alone(self):
+        """A brighter lamp, beyond the range of the images. Seen to fail with the stops of the new light."""
+        path = self.lit(plates(), exposure=-1)[1]
+        before, light = Glb.read(path), ifl.read_image(self.folder / "lit.lightmap-0.exr")
         with self.assertWarnsRegex(ifl.Warning, "exceeds the range"):
-            ifl.export(ifl.open_solution(self.folder / "lit.h5"), path, lightmap=True, update=["group.nested", "pane"])
+            self.brighten(path, ["group.nested", "pane"])
         after = Glb.read(path)
         new_light = ifl.read_image(self.folder / "lit.lightmap-0.exr")
         changed = (new_light != light).any(axis=2)
@@ -342,9 +346,19 @@ class Update(LitFiles):
             np.testing.assert_array_equal(a[~changed], b[~changed])
         self.assertGreater((old[0] != new[0]).sum(), 0)
 
+    def test_keeps_the_scale(self):
+        """The new light exceeds the scale, so it gets gains."""
+        path = self.lit(plates(), exposure=-8)[1]  # the scale is the brightest texel, 2 m from the light
+        before = Glb.read(path).json["materials"][0]["extensions"]["MOZ_lightmap"]
+        self.assertNotIn("extras", before)
+        self.brighten(path, ["*.nested"])
+        after = Glb.read(path).json["materials"][0]["extensions"]["MOZ_lightmap"]
+        self.assertEqual(after["intensity"], before["intensity"])
+        self.assertAlmostEqual(after["extras"]["gain"]["stops"], np.log2(3 * (2 / 2.5) ** 2), delta=0.02)
+
     def test_keeps_the_exposure(self):
         with self.assertRaisesRegex(ifl.InputError, "exposure"):
-            self.lit(plates(), update=["nested"])
+            self.lit(plates(), update=["group"])
 
 
 class Density(LitFiles):
@@ -356,6 +370,21 @@ class Density(LitFiles):
         corners = file.values(primitive["attributes"]["TEXCOORD_1"])[file.values(primitive["indices"]).ravel()]
         a, b, c = (corners.reshape(-1, 3, 2) * image.shape[1::-1]).transpose(1, 0, 2)
         return np.abs(np.cross(b - a, c - a)).sum() / 2
+
+    def test_is_drawn_before_solving(self):
+        """The lightmap has the same layout."""
+        source, path = self.lit(plates(), densities={"tin": 10})
+        log = self.interflect("export", source.name, "-o", "map.glb", "--lightmap", "--lightmap-content", "density",
+                              "--density", "tin=10").stderr  # fmt: skip
+        self.assertRegex(log, "nested: 10 of 10 texels per metre")
+        self.assertNotIn("map.lightmap-0.exr", self.files())
+        lit, drawn = Glb.read(path), Glb.read(self.folder / "map.glb")
+        described = [file.json["asset"]["extras"]["interflect"]["lightmap"] for file in (lit, drawn)]
+        self.assertEqual(described[1]["layout"], described[0]["layout"])
+        for (name, _, a), (_, _, b) in zip(lit.primitives(), drawn.primitives(), strict=True):
+            coordinates = [file.values(p["attributes"]["TEXCOORD_1"]) for file, p in ((lit, a), (drawn, b))]
+            np.testing.assert_array_equal(*coordinates, err_msg=name)
+            self.assertIn("KHR_materials_unlit", drawn.json["materials"][b["material"]]["extensions"])
 
     def test_is_that_of_the_pattern(self):
         path = self.lit(plates(), densities={"group.nest*": 40, "pane": 5, "b*": 80})[1]

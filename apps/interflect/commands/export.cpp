@@ -85,6 +85,10 @@ V3f up_of(const Scene& scene) {
     return {0, 0, 1};
 }
 
+bool draws_density(const ExportArguments& arguments) {
+    return arguments.has_lightmap && arguments.lightmap.content == LightmapContent::density;
+}
+
 SolvedScene read_dimmed(const ExportArguments& arguments) {
     SolvedScene solved = read_light_of(arguments.scene.path);
     arguments.dimming.dim(solved);
@@ -105,6 +109,7 @@ void run_scene(const ExportArguments& arguments) {
 
 bool traces_rays(const std::filesystem::path& output, const ExportOptions& options) {
     const std::string extension = lower_case_extension(output);
+    if (options.lightmap && options.lightmap->content == LightmapContent::density) return false;
     const bool is_bake =
         options.lightmap || extension == ".glb" || extension == ".gltf" || extension == ".ply" || extension == ".obj";
     return (is_bake && options.bake.shading != Shading::smooth) || extension == ".json" || extension == ".exr";
@@ -160,6 +165,10 @@ void check_format_options(const ExportArguments& arguments, const CLI::App& comm
     constexpr std::array<std::string_view, 1> of_effort = {"--quality"};
     if (arguments.bake.shading == Shading::smooth && !arguments.has_lightmap)
         refuse_options(command, of_effort, "it has no effect on vertices with --shading smooth");
+    constexpr std::array<std::string_view, 9> of_light = {"--shading",        "--samples",         "--denoise",
+                                                          "--seed",           "--exposure",        "--dim",
+                                                          "--lightmap-image", "--lightmap-groups", "--update"};
+    if (draws_density(arguments)) refuse_options(command, of_light, "it has no effect on density");
 }
 
 void set_bake(ExportOptions& options, const ExportArguments& arguments, const CLI::App& command) {
@@ -180,6 +189,19 @@ void set_bake(ExportOptions& options, const ExportArguments& arguments, const CL
         options.lightmap->texels_per_metre *= static_cast<float>(resolution);
 }
 
+/// @param lists_objects  Whether to add a line for each object.
+void log_summary(const LightmapSummary& summary, bool lists_objects) {
+    if (summary.sizes.empty()) return;
+    std::string sizes;
+    for (const Imath::V2i& size : summary.sizes)
+        sizes += fmt::format("{}{} x {}", sizes.empty() ? "" : ", ", size.x, size.y);
+    spdlog::info("lightmap: {} {} of {} texels", summary.sizes.size(), summary.sizes.size() == 1 ? "image" : "images",
+                 sizes);
+    if (!lists_objects) return;
+    for (const auto& [object, requested, obtained] : summary.densities)
+        spdlog::info("{}: {:.3g} of {:g} texels per metre", object, obtained, requested);
+}
+
 void run(const ExportArguments& arguments, const CLI::App& command, int& exit_code) {
     const ThreadLimit threads(arguments.threads);
     if (!is_scene_export(arguments.output))
@@ -193,21 +215,26 @@ void run(const ExportArguments& arguments, const CLI::App& command, int& exit_co
     const NamedFile output{"--output", arguments.output};
     require_distinct_files(input_files(arguments.scene, arguments.view), {&output, 1});
     if (is_scene_export(arguments.output)) return run_scene(arguments);
-    const SolvedScene solved = read_dimmed(arguments);
+    const bool needs_light = !draws_density(arguments), is_update = !arguments.lightmap.update.empty();
+    const SolvedScene solved =
+        needs_light ? read_dimmed(arguments) : read_scene_or_solution(arguments.scene, arguments.dimming);
     refuse_overwriting(solved.scene, {&output, 1});
     ExportOptions options;
-    const bool is_update = !arguments.lightmap.update.empty();
     options.exposure = arguments.exposure.stops;
-    if (arguments.exposure.relative && !is_update) options.exposure += export_exposure(solved.scene, solved.solution);
+    if (arguments.exposure.relative && needs_light && !is_update)
+        options.exposure += export_exposure(solved.scene, solved.solution);
     options.up = arguments.up ? V3f(*arguments.up) : up_of(solved.scene);
     options.probes = arguments.probes;
     set_bake(options, arguments, command);
     if (options.lightmap) options.lightmap->max_bytes = free_memory();
     Warnings warnings;
     options.warnings = &warnings;
+    LightmapSummary summary;
+    options.summary = &summary;
     for (const auto& path : write_or_explain(arguments.output, solved, options))
-        spdlog::info("{}: {}", path.string(),
-                     is_update ? "updated" : fmt::format("exposure {:+.2f}", options.exposure));
+        spdlog::info("{}{}", path.string(),
+                     needs_light && !is_update ? fmt::format(": exposure {:+.2f}", options.exposure) : "");
+    log_summary(summary, !needs_light);
     log_warnings(warnings);
     if (is_stop_requested()) exit_code = interrupted;
 }
@@ -281,8 +308,11 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
         ->check(CLI::Range(1, 64));
     of_lightmap(add_choice<LightmapContent>(
                     command, "--lightmap-content", lightmap.content,
-                    {{"irradiance", LightmapContent::irradiance}, {"radiance", LightmapContent::radiance}},
-                    "irradiance, which the renderer multiplies by the reflectance; or radiance, shown as it is"))
+                    {{"irradiance", LightmapContent::irradiance},
+                     {"radiance", LightmapContent::radiance},
+                     {"density", LightmapContent::density}},
+                    "irradiance, which the renderer multiplies by the reflectance; radiance, shown as it is; or "
+                    "density, squares of 8 x 8 texels without light, also of a scene that is not solved"))
         ->default_str("irradiance");
     of_lightmap(add_choice<std::string>(command, "--lightmap-image", lightmap.image, {{"exr", ".exr"}, {"hdr", ".hdr"}},
                                         "Format of the unclamped images beside the file"))
@@ -309,7 +339,8 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
 void add_export(CLI::App& app, int& exit_code) {
     const auto options = std::make_shared<ExportArguments>();
     CLI::App& command = *app.add_subcommand("export", "Write a solved scene, or a scene, for other programs");
-    options->scene.add_to(command, "Solution file (.h5); for another renderer also a scene");
+    options->scene.add_to(command,
+                          "Solution file (.h5); for another renderer or --lightmap-content density also a scene");
     std::string extensions;
     for (const ExportFormat& format : export_formats) extensions += std::string(" ") + format.extension;
     for (const char* extension : scene_export_extensions) extensions += std::string(" ") + extension;

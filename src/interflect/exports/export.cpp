@@ -50,6 +50,8 @@ void require_usable(const LightmapOptions& options) {
     require(options.gutter >= 1 && options.gutter <= 64, fmt::format("gutter is {}, expected 1 to 64", options.gutter));
     require(options.image == ".exr" || options.image == ".hdr",
             fmt::format("image is '{}', expected .exr or .hdr", options.image));
+    require(options.content != LightmapContent::density || (options.update.empty() && !options.groups),
+            "content is density, expected irradiance or radiance for an update and for light groups");
     require(options.update.empty() || options.image == ".exr",
             "image is .hdr, expected .exr for an update, because it keeps the texels of the images");
 }
@@ -99,8 +101,11 @@ std::vector<fs::path> export_solution(const fs::path& path, const Scene& scene, 
     const ExportFormat& format = require_export_format(path);
     require_usable(format, options);
     require_no_faults(scene_faults(scene), "cannot export", scene);
-    solution.forest->require_made_for(scene);
-    require_values_of_elements(*solution.forest, solution.irradiance.size(), "irradiance");
+    const bool needs_light = !options.lightmap || options.lightmap->content != LightmapContent::density;
+    if (needs_light || solution.forest) {
+        solution.forest->require_made_for(scene);
+        require_values_of_elements(*solution.forest, solution.irradiance.size(), "irradiance");
+    }
     if (options.lightmap && options.lightmap->groups && solution.groups.empty())
         throw InputError("lightmaps of light groups: the solution has no groups; solve the scene with light groups");
     const PendingFile can_be_written(path);  // throws before the computation if the path cannot be written

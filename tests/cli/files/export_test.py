@@ -241,6 +241,7 @@ class Export(CommandTest):
             (("scene.h5", "-o", "room.glb", "--lightmap", "--max-triangles", "9"), WRONG_USAGE, "--max-triangles"),
             (("scene.h5", "-o", "room.glb", "--lightmap", "--update", "wall"), BAD_INPUT, "is not there"),
             (("scene.h5", "-o", "room.glb", "--lightmap", "--update", "wall", "--exposure", "1"), WRONG_USAGE, "--exposure"),
+            (("scene.mgf", "-o", "room.glb", "--lightmap", "--lightmap-content", "density"), BAD_INPUT, "expected a solution"),
             (("scene.h5", "-o", "room.vtu", "--max-triangles", "9"), WRONG_USAGE, "--max-triangles"),
             (("scene.h5", "-o", "room.glb", "--shading", "smooth", "--min-edge", "1"), WRONG_USAGE, "--min-edge"),
             (("scene.h5", "-o", "room.glb", "--shading", "smooth", "--quality", "low"), WRONG_USAGE, "--quality"),

@@ -101,8 +101,8 @@ TEST_F(LightmapUpdate, OfAnotherLayoutNamesTheDifference) {
     options_.lightmap->update.clear();
     write(uniform(scene_, 1));
 
-    options_.lightmap->update = {"chair"};
-    EXPECT_THAT(refusal(uniform(scene_, 1)), HasSubstr("no object or material"));
+    options_.lightmap->update = {"lamp", "chair"};
+    EXPECT_THAT(refusal(uniform(scene_, 1)), HasSubstr("'chair'"));
     options_.lightmap->update = {"lamp"};
     options_.lightmap->gutter = 3;
     EXPECT_THAT(refusal(uniform(scene_, 1)), HasSubstr("gutter is 2, not 3"));

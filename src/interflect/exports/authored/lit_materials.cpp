@@ -97,8 +97,8 @@ int LitMaterials::lit(int material, int page) {
     const Json json =
         material < 0 ? unnamed_material() : document_.json.at("materials").at(static_cast<std::size_t>(material));
     if (has_extension(json, khr_unlit)) return material;
-    if (images_.encoding.content == LightmapContent::radiance) {
-        if (!is_diffuse(json)) return material;
+    if (images_.encoding.content != LightmapContent::irradiance) {
+        if (images_.encoding.content == LightmapContent::radiance && !is_diffuse(json)) return material;
         document_.use_extension(khr_unlit);
         return entry->second = document_.add("materials", as_radiance(json, page));
     }
@@ -132,7 +132,7 @@ void LitMaterials::keep(const Json& primitive) {
 void LitMaterials::light(Json& primitive, int page) {
     const int own = primitive.value("material", -1), material = lit(own, page);
     if (material >= 0) primitive["material"] = material;
-    if (images_.encoding.content == LightmapContent::radiance) {
+    if (images_.encoding.content != LightmapContent::irradiance) {
         if (own >= 0 && material != own) add_variants(primitive, own, material);
     } else if (has_extension(primitive, khr_variants)) {
         for (Json& mapping : primitive["extensions"][khr_variants]["mappings"])

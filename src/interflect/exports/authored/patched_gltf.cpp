@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -250,14 +251,18 @@ std::vector<ExportedFile> add_lightmap(GltfDocument& document, SourceGltf& sourc
     AuthoredCharts authored = authored_charts(source.model(), authored_densities(document.json), chosen, warnings);
     if (authored.charts.empty() && !authored.objects.empty())
         throw InputError("no surface gets a lightmap: the density of each is 0, or its triangles have no area");
-    const PatchVisibility visibility = patch_visibility(scene, solution);
-    TexelMover mover(authored, scene, visibility);
+    PatchVisibility visibility;
+    std::optional<TexelMover> mover;  // empty for images without light
+    if (chosen.content != LightmapContent::density) {
+        visibility = patch_visibility(scene, solution);
+        mover.emplace(authored, scene, visibility);
+    }
     const PackCharts pack = [&](std::vector<LightmapChart>& charts) {
         return pack_groups(charts, authored.first_charts(), chosen.gutter, chosen.max_size);
     };
-    const MoveTexels move = [&](std::size_t chart, std::span<TexelPlace> places) { mover.move(chart, places); };
+    const MoveTexels move = [&](std::size_t chart, std::span<TexelPlace> places) { mover->move(chart, places); };
     const BakedImages baked = bake_charts(authored.charts, pack, move, scene, solution, options, earlier);
-    warn_of_backs(document.json, authored, mover, warnings);
+    if (mover) warn_of_backs(document.json, authored, *mover, warnings);
 
     LightmapImages images = add_lightmap_images(document, path, baked, solution.group_names, options, earlier);
     LitMaterials materials(document, images);

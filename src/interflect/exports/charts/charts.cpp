@@ -244,9 +244,9 @@ LightmapChart chart_of(const Scene& scene, FlatPatches patches, const LightmapOp
             chart.size = {std::max(chart.size.x, corner.x), std::max(chart.size.y, corner.y)};
     const int most = options.max_size - 2 * options.gutter;
     const PatchIndex first = chart.patches.front().patch;
-    const float density = density_of(scene, first, options);
-    chart.columns = texels_along(chart.size.x, density, most);
-    chart.rows = texels_along(chart.size.y, density, most);
+    chart.requested_density = density_of(scene, first, options);
+    chart.columns = texels_along(chart.size.x, chart.requested_density, most);
+    chart.rows = texels_along(chart.size.y, chart.requested_density, most);
     const Patch& patch = scene.patches[first];
     chart.object = patch.object;
     chart.is_updated = is_updated(scene.objects[patch.object], scene.materials[patch.material].name, options);

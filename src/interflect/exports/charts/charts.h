@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -16,10 +17,13 @@ struct LightmapChart {
     FlatPatches patches;  ///< Coordinates along columns and rows from texel (0, 0) [m].
     Imath::V2d size;      ///< Size of the rectangle [m].
     int columns = 2, rows = 2;
+    float requested_density = 0;      ///< Result of density_of() [texels/m].
     std::uint32_t object = 0;         ///< Index into Scene::objects of the solved scene.
     bool is_updated = true;           ///< Whether its light is computed (LightmapOptions::update).
     int page = 0, left = 0, top = 0;  ///< Image and position of texel (0, 0), set by pack_charts().
 
+    /// Returns the lower resolution of both directions [texels/m].
+    double density() const { return 1 / std::max(spacing().x, spacing().y); }
     Imath::V2d spacing() const { return {size.x / (columns - 1), size.y / (rows - 1)}; }  ///< [m]
     /// Returns the texture coordinate of a point of the chart [m]; (0, 0) is the upper left corner of its image.
     V2f coordinate(const Imath::V2d& at, const std::vector<Image>& images) const;

@@ -76,7 +76,7 @@ void add_emission(GltfDocument& document, Json& json, GltfTextures& textures, co
 int add_material(GltfDocument& document, GltfTextures& textures, const Material& material, const LightmapImages& images,
                  int page) {
     Json json{{"name", escaped(material.name)}};
-    if (images.encoding.content == LightmapContent::radiance) {
+    if (images.encoding.content != LightmapContent::irradiance) {
         const int texture = images.textures[static_cast<std::size_t>(page)];
         json["pbrMetallicRoughness"] = {
             {"baseColorTexture", {{"index", texture}}}, {"metallicFactor", 0}, {"roughnessFactor", 1}};
@@ -100,6 +100,9 @@ int add_material(GltfDocument& document, GltfTextures& textures, const Material&
 std::vector<ExportedFile> add_lightmap(GltfDocument& document, const std::filesystem::path& path, const Scene& scene,
                                        const Solution& solution, const ExportOptions& options,
                                        const EarlierLightmap* earlier) {
+    if (!solution.forest)
+        throw InputError(
+            "lightmap: the layout of a scene that is written anew depends on its light: expected a solution");
     const Lightmap lightmap = make_lightmap(scene, solution, options, earlier);
     LightmapImages images = add_lightmap_images(document, path, lightmap, solution.group_names, options, earlier);
     const ElementForest patches(scene, scene.patches.size());

@@ -46,11 +46,15 @@ std::string name_of_image(const std::filesystem::path& path, std::size_t page, s
     return fmt::format("{}-group-{}", name_of_image(path, page), group);
 }
 
-/// Sets the encoding and the stops. An update keeps those of the file, because other bytes would represent the same
-/// light; it chooses the stops of a file without gains.
+/// Sets the encoding and the stops. An update keeps the encoding of the file, and its stops if it has gains; otherwise
+/// the bytes of unchanged light would change.
 void set_encoding(LightmapImages& result, const std::vector<Image>& images, const ExportOptions& options,
                   const EarlierLightmap* earlier) {
     const LightmapContent content = options.lightmap->content;
+    if (content == LightmapContent::density) {
+        result.encoding = {content, /*exposure=*/0};
+        return;
+    }
     result.encoding = earlier
                           ? LightmapEncoding{content, earlier->exposure, earlier->scale}
                           : LightmapEncoding{content, options.exposure, scale_of(images, content, options.exposure)};
@@ -97,21 +101,33 @@ std::string encode_beside(const Image& image, const std::string& extension, cons
 
 Json description_of(const BakedImages& baked, const LightmapImages& encoded) {
     const LightmapEncoding& encoding = encoded.encoding;
-    const bool holds_irradiance = encoding.content == LightmapContent::irradiance;
-    Json images = Json::array();
-    for (const ExportedFile& file : encoded.files) images.push_back(escaped(file.path.filename().string()));
-    return {{"exposure", encoding.exposure},
-            {"lightmap",
-             {{"quantity", holds_irradiance ? "irradiance" : "radiance"},
-              {"unit", holds_irradiance ? "lm/m^2" : "cd/m^2"},
-              {"encoding",
-               "sRGB, 8 bit; a linear value of 1 stands for `scale`; brighter texels are divided by their gain"},
-              {"scale", encoding.scale},
-              {"stops", encoded.stops},
-              {"unclamped", images},
-              {"used", baked.used},
-              {"covered", baked.covered},
-              {"layout", baked.layout}}}};
+    Json lightmap{{"quantity", quantity_of(encoding.content)}};
+    if (encoding.content == LightmapContent::density) {
+        lightmap["unit"] = "texels/m";
+        lightmap["encoding"] = "squares of 8 x 8 texels; the lowest density of each object is in `densities`";
+        for (const auto& [object, requested, obtained] : baked.densities)
+            lightmap["densities"].push_back(
+                {{"object", escaped(object)}, {"requested", requested}, {"obtained", obtained}});
+    } else {
+        Json images = Json::array();
+        for (const ExportedFile& file : encoded.files) images.push_back(escaped(file.path.filename().string()));
+        lightmap["unit"] = encoding.content == LightmapContent::irradiance ? "lm/m^2" : "cd/m^2";
+        lightmap["encoding"] =
+            "sRGB, 8 bit; a linear value of 1 stands for `scale`; brighter texels are divided by their gain";
+        lightmap["scale"] = encoding.scale;
+        lightmap["stops"] = encoded.stops;
+        lightmap["unclamped"] = std::move(images);
+        lightmap["covered"] = baked.covered;
+    }
+    lightmap["used"] = baked.used;
+    lightmap["layout"] = baked.layout;
+    return {{"exposure", encoding.exposure}, {"lightmap", std::move(lightmap)}};
+}
+
+LightmapSummary summary_of(const BakedImages& baked) {
+    LightmapSummary summary{{}, baked.densities};
+    for (const Image& image : baked.images) summary.sizes.emplace_back(image.width, image.height);
+    return summary;
 }
 
 Json add_groups(const std::filesystem::path& path, const BakedImages& baked, const std::vector<std::string>& names,
@@ -153,9 +169,11 @@ LightmapImages add_lightmap_images(GltfDocument& document, const std::filesystem
     for (std::size_t page = 0; page < baked.images.size(); ++page) {
         const std::string name = name_of_image(path, page);
         add_image(document, baked.images[page], name, result);
+        if (chosen.content == LightmapContent::density) continue;
         result.files.push_back(
             {path.parent_path() / (name + chosen.image), encode_beside(baked.images[page], chosen.image, quantity)});
     }
+    if (options.summary) *options.summary = summary_of(baked);
     Json description = description_of(baked, result);
     if (!baked.groups.empty())
         description["lightmap"]["groups"] = add_groups(path, baked, groups, chosen.image, quantity, result.files);

@@ -11,7 +11,8 @@
 
 namespace interflect::detail {
 
-/// Encoding of the images in a file. A linear texel of 1 represents `scale`, in the unit of `content`.
+/// Encoding of the images in a file. Colours of density are stored unchanged. A linear texel of 1 represents `scale`,
+/// in the unit of `content`.
 struct LightmapEncoding {
     LightmapContent content;
     float exposure;  ///< [stops]

@@ -12,6 +12,7 @@
 #include "interflect/base/threads/monitor_section.h"
 #include "interflect/core.h"
 #include "interflect/exports/lightmap/baked_light.h"
+#include "interflect/exports/lightmap/density.h"
 #include "interflect/geometry/search/box_tree.h"
 #include "interflect/geometry/textures/texture_mapping.h"
 #include "interflect/measure.h"
@@ -220,6 +221,7 @@ double lightmap_bytes(const TexelCounts& texels, const ExportOptions& options, s
     constexpr double copied_bytes = 2 * sizeof(Rgb);  // a texel of an image, and its copy for the encoder
     double image_bytes = copied_bytes + encoded_bytes;
     if (options.lightmap->groups) image_bytes += static_cast<double>(group_count) * copied_bytes;
+    if (options.lightmap->content == LightmapContent::density) return texels.images * image_bytes;
     // Two copies of a texel's place, its entries in LightmapTexels and PointSearch, and its irradiance
     constexpr double place_bytes = 2 * sizeof(TexelPlace) + sizeof(LitTexel) + sizeof(Boxed) + sizeof(Rgb);
     return texels.images * image_bytes + texels.charts * (place_bytes + light_bytes(options.bake.shading));
@@ -239,6 +241,18 @@ void require_lightmap_memory(const TexelCounts& texels, const ExportOptions& opt
         .setting = "texels_per_metre"});
 }
 
+/// Requires that each pattern matches an object or a material.
+void require_names(std::span<const std::string> patterns, const Scene& scene) {
+    for (const std::string& pattern : patterns) {
+        const auto is_object = [&](const std::string& object) { return matches_object(pattern, object); };
+        const auto is_material = [&](const Material& material) { return matches(pattern, material.name); };
+        if (std::none_of(scene.objects.begin(), scene.objects.end(), is_object) &&
+            std::none_of(scene.materials.begin(), scene.materials.end(), is_material))
+            throw InputError(Fault{.text = fmt::format("lightmap: no object or material is named '{}'", pattern),
+                                   .setting = "update"});
+    }
+}
+
 }  // namespace
 
 BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pack, const MoveTexels& move_texels,
@@ -246,9 +260,7 @@ BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pa
                         const EarlierLightmap* earlier) {
     const LightmapOptions& lightmap = *options.lightmap;
 
-    if (std::none_of(charts.begin(), charts.end(), [](const LightmapChart& chart) { return chart.is_updated; }) &&
-        !charts.empty())
-        throw InputError("lightmap: no object or material has a name that matches update");
+    require_names(lightmap.update, scene);
 
     // Check a lower bound of the memory first, because packing many charts takes minutes
     TexelCounts texel_counts;
@@ -261,11 +273,19 @@ BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pa
     require_lightmap_memory(texel_counts, options, solution.group_names.size());
     BakedImages baked;
     baked.layout = layout_of(charts, scene, lightmap);
+    baked.densities = densities_of(charts, scene);
+    if (options.warnings) warn_of_reduced_density(baked.densities, *options.warnings);
+    const double all_texels = std::max(1.0, texel_counts.images);  // no division by 0 without charts
+    baked.used = texel_counts.charts / all_texels;
     if (earlier) require_same_layout(*earlier, baked.layout, sizes);
     if (earlier && !lightmap.groups)
         baked.images = earlier->images;
     else
         for (const Imath::V2i& size : sizes) baked.images.emplace_back(size.x, size.y);
+    if (lightmap.content == LightmapContent::density) {
+        draw_density(charts, lightmap, baked.images);
+        return baked;
+    }
 
     LightmapTexels texels(lightmap);
     for (std::size_t i = 0; i < charts.size(); ++i) {
@@ -281,8 +301,6 @@ BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pa
     else  // the other ranks already have this scene and solution
         texels.evaluate(scene, BakedLight(scene, solution, options.bake, texel_sampling), options.monitor,
                         baked.images);
-    const double all_texels = std::max(1.0, texel_counts.images);  // no division by 0 without charts
-    baked.used = texel_counts.charts / all_texels;
     baked.covered = earlier ? earlier->covered : static_cast<double>(texels.count_inside()) / all_texels;
     return baked;
 }

@@ -17,6 +17,7 @@ struct BakedImages {
     std::vector<Image> images;               ///< Irradiance [lm/m^2] or radiance [cd/m^2]; 0 between charts.
     std::vector<std::vector<Image>> groups;  ///< Images of each light group, [group][image]; or empty.
     Json layout;                             ///< Description of the layout (layout_of()).
+    std::vector<ObjectDensity> densities;    ///< Result of densities_of().
     double used = 0;                         ///< Fraction of the texels of all images that are in charts and gutters.
     double covered = 0;                      ///< Fraction of the texels of all images whose centres are on patches.
 };
@@ -31,7 +32,7 @@ using PackCharts = std::function<std::vector<Imath::V2i>(std::vector<LightmapCha
 using MoveTexels = std::function<void(std::size_t chart, std::span<TexelPlace> places)>;
 
 /// Packs charts, then evaluates light at texel centres or, outside the patches, at the nearest point of a patch. Direct
-/// light of hybrid shading is the mean over the texel.
+/// light of hybrid shading is the mean over the texel. LightmapContent::density uses neither `move_texels` nor light.
 /// @param charts   Receive their positions in the images.
 /// @param options  Must include a lightmap.
 /// @param earlier  Lightmap whose other texels are kept (LightmapOptions::update); null: all light is computed.

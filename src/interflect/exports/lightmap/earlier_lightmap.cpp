@@ -18,10 +18,6 @@ namespace {
 
 constexpr const char* places = "places";  // member of a layout: checksum of the charts' places
 
-const char* quantity_of(LightmapContent content) {
-    return content == LightmapContent::irradiance ? "irradiance" : "radiance";
-}
-
 /// Reads images from the folder of the glTF file.
 std::vector<Image> read_images(const fs::path& gltf, const Json& names) {
     std::vector<Image> images;
@@ -76,6 +72,18 @@ bool have_sizes(const std::vector<Image>& images, std::span<const Imath::V2i> si
 }
 
 }  // namespace
+
+const char* quantity_of(LightmapContent content) {
+    switch (content) {
+        case LightmapContent::irradiance:
+            return "irradiance";
+        case LightmapContent::radiance:
+            return "radiance";
+        case LightmapContent::density:
+            return "density";
+    }
+    return "";
+}
 
 Json layout_of(std::span<const LightmapChart> charts, const Scene& scene, const LightmapOptions& options) {
     Json densities = Json::array();

@@ -14,13 +14,16 @@ namespace interflect::detail {
 
 /// Lightmap of the file that an export updates (LightmapOptions::update).
 struct EarlierLightmap {
-    std::filesystem::path path;              ///< Of the glTF file.
+    std::filesystem::path path;              ///< Path of the glTF file.
     Json layout;                             ///< Description of its layout (layout_of()).
     float exposure, scale, stops;            ///< As in LightmapImages.
     double covered;                          ///< BakedImages::covered
     std::vector<Image> images;               ///< Unclamped images.
     std::vector<std::vector<Image>> groups;  ///< Unclamped images of each light group, [group][image].
 };
+
+/// Returns the name of the quantity of images in files.
+const char* quantity_of(LightmapContent content);
 
 /// Describes a layout: the options that determine it, and a checksum of the charts' places.
 /// @param charts  Packed charts. @param scene  The solved scene.
