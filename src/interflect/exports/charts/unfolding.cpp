@@ -6,6 +6,8 @@
 #include <unordered_map>
 #include <utility>
 
+#include "interflect/exports/charts/moments.h"
+
 namespace interflect::detail {
 
 namespace {
@@ -18,6 +20,13 @@ constexpr std::size_t max_patches_unfolded = 4096;
 constexpr double max_stretch = 0.1;
 /// Maximum relative change of the parallelogram of the two edges at a corner.
 constexpr double max_shear = 0.2;
+
+/// Pieces that exceed this multiple of the limits close a loop, as around a cylinder.
+constexpr double closing = 3;
+
+/// Layouts with less fill (Moments::fill()) waste their rectangle. With 0.5 or 0.7, the layouts of office, torus and
+/// sphere are nearly the same; 0.8 also cuts flat walls (docs/files/export.md).
+constexpr double min_fill = 0.5;
 
 /// Relative tolerance for rounding errors.
 constexpr double flat_rounding = 1e-4;
@@ -91,23 +100,32 @@ class Unfolding {
     }
 
   private:
-    /// Adds adjacent pieces to layout `number`, breadth-first.
+    /// Adds adjacent pieces to layout `number`, ring by ring. The first ring with a piece that deforms too much is the
+    /// last one, because a curved surface would continue in thin strips beyond it.
     FlatPatches grow(std::uint32_t seed, std::uint32_t number) {
         layout_.clear();
         boxes_.clear();
         position_.clear();
+        moments_ = {};
+        is_too_curved_ = false;
         std::vector<std::uint32_t> added{seed};
         add(seed, pieces_[seed], number);
-        for (std::size_t i = 0; i < added.size(); ++i)
+        std::size_t ring_end = added.size();
+        for (std::size_t i = 0; i < added.size(); ++i) {
+            if (i == ring_end) {
+                if (is_too_curved_) break;
+                ring_end = added.size();
+            }
             for (const std::uint32_t j : joints_of_[added[i]])
                 for (const EdgeIndex edge : joints_[j].edge) {
                     const std::uint32_t next = piece_of_[edge.patch()];
                     if (next == none || layout_of_[next] != none || layout_.size() >= max_patches_unfolded) continue;
                     const std::optional<FlatPatches> placed = place(next, number);
-                    if (!placed) continue;
+                    if (!placed || !stays_compact(*placed)) continue;
                     add(next, *placed, number);
                     added.push_back(next);
                 }
+        }
         return std::exchange(layout_, {});
     }
 
@@ -118,12 +136,21 @@ class Unfolding {
                 position_.try_emplace(corners_.group[CornerIndex(flat.patch, c)], flat.corners[c]);
             place_in_layout_[flat.patch] = layout_.size();
             layout_.push_back(flat);
+            moments_.add(flat);
             boxes_.push_back(flat.box());
         }
     }
 
-    /// Returns a piece moved to the current layout; nullopt if it conflicts, deforms too much or overlaps.
-    std::optional<FlatPatches> place(std::uint32_t piece, std::uint32_t number) const {
+    /// Returns whether the layout with a further piece is filled enough, or better than before.
+    bool stays_compact(const FlatPatches& placed) const {
+        Moments moments = moments_;
+        for (const FlatPatch& flat : placed) moments.add(flat);
+        return moments.fill() >= std::min(min_fill, moments_.fill());
+    }
+
+    /// Returns a piece moved to the current layout; nullopt if it conflicts, deforms too much or overlaps. Sets
+    /// is_too_curved_ if it deforms too much, but does not close a loop.
+    std::optional<FlatPatches> place(std::uint32_t piece, std::uint32_t number) {
         if (has_conflict(piece, number)) return std::nullopt;
         bool has_seams = false;
         const std::vector<PointPair> pairs = common_points(piece, number, has_seams);
@@ -140,6 +167,8 @@ class Unfolding {
             // Pieces with seams must not deform, because their corners lie inside the edges of other patches.
             const bool fits = has_seams ? is_alike(pieces_[piece][i], placed[i], flat_rounding, flat_rounding)
                                         : is_alike(pieces_[piece][i], placed[i], max_stretch, max_shear);
+            is_too_curved_ |= !fits && !has_seams &&
+                              is_alike(pieces_[piece][i], placed[i], closing * max_stretch, closing * max_shear);
             if (!fits || !has_room(placed[i])) return std::nullopt;
         }
         return placed;
@@ -216,6 +245,8 @@ class Unfolding {
 
     // The current layout:
     FlatPatches layout_;
+    Moments moments_;
+    bool is_too_curved_ = false;  // whether a piece deformed too much
     std::vector<Imath::Box2d> boxes_;
     std::unordered_map<std::uint32_t, Imath::V2d> position_;  // position of each group of joined corners
     std::unordered_map<std::uint32_t, std::size_t> place_in_layout_;
