@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <string>
+#include <utility>
 
+#include "interflect/base/files/input_file.h"
 #include "interflect/export.h"
 #include "tests/exports/lightmap/lightmaps.h"
 #include "tests/support/scenes/scenes.h"
@@ -112,8 +115,45 @@ TEST_F(LightmapUpdate, OfAnotherLayoutNamesTheDifference) {
     options_.lightmap->content = LightmapContent::irradiance;
     for (V3f& x : scene_.vertices) x *= 2;
     EXPECT_THAT(refusal(uniform(scene_, 1)), HasSubstr("other places"));
+    for (V3f& x : scene_.vertices) x /= 2;
+    V3f& corner = scene_.vertices[scene_.patches[PatchIndex(1)].vertices[2]];
+    const V3f old_corner = std::exchange(corner, {1.9f, 0.9f, 1});  // in the same rectangle
+    EXPECT_THAT(refusal(uniform(scene_, 1)), HasSubstr("shapes"));
+    corner = old_corner;
     std::filesystem::remove(folder_ / "lit.lightmap-0.exr");
     EXPECT_THAT(refusal(uniform(scene_, 1)), HasSubstr("lit.lightmap-0.exr"));
+}
+
+/// A chart whose surfaces have several materials is computed as a whole. Seen to fail if its first patch decides.
+TEST_F(LightmapUpdate, ComputesChartsThatContainTheMaterial) {
+    const std::uint32_t stripe = testing_support::add_material(scene_, Rgb(0.5f), Rgb(0));
+    scene_.materials[stripe].name = "stripe";
+    const PatchIndex patch = testing_support::add_rectangle(scene_, V3f(0, 1, 0), V3f(2, 0, 0), V3f(0, 1, 0), stripe);
+    scene_.patches[patch].object = 1;
+    write(uniform(scene_, 100));
+    options_.lightmap->update = {"stripe"};
+    write(uniform(scene_, 300));
+    EXPECT_EQ(counts(light()).at(300), (21 + 4) * (21 + 4));
+}
+
+/// Values that would make the images invalid, and a name in another folder.
+TEST_F(LightmapUpdate, RefusesDamagedFiles) {
+    write(uniform(scene_, 1));
+    const std::string bytes = read_bytes(folder_ / "lit.glb");
+    options_.lightmap->update = {"lamp"};
+    const auto refusal_with = [&](const std::string& found, std::string replacement) {
+        std::string damaged = bytes;
+        const std::size_t at = damaged.find(found);
+        replacement.resize(found.size(), ' ');
+        if (at != std::string::npos) damaged.replace(at, found.size(), replacement);
+        std::ofstream(folder_ / "lit.glb", std::ios::binary) << damaged;
+        return refusal(uniform(scene_, 1));
+    };
+    EXPECT_THAT(refusal_with("\"scale\":1.0", "\"scale\":0"), HasSubstr("the scale is 0"));
+    EXPECT_THAT(refusal_with("\"stops\":0.0", "\"stops\":-1"), HasSubstr("the range in stops is -1"));
+    EXPECT_THAT(refusal_with("\"interflect\"", "\"other\""), HasSubstr("a lightmap of this version"));
+    EXPECT_THAT(refusal_with("\"lit.lightmap-0.exr\"]", "\"/../../tmp/a.exr\"]"),
+                HasSubstr((folder_ / "a.exr").string()));
 }
 
 }  // namespace

@@ -216,9 +216,11 @@ AuthoredCharts authored_charts(Model model, const AuthoredDensities& densities, 
         result.objects.push_back({instance->node, found->second, instance->object,
                                   static_cast<std::uint32_t>(result.charts.size()), instance->to_world});
         for (LightmapChart chart : shape.charts) {
-            const Mesh& mesh = model.meshes[shape.triangles[chart.patches.front().patch].mesh];
             chart.object = instance->object;
-            chart.is_updated = is_updated(object, model.materials[mesh.material].name, options);
+            chart.is_updated = std::any_of(chart.patches.begin(), chart.patches.end(), [&](const FlatPatch& flat) {
+                const Mesh& mesh = model.meshes[shape.triangles[flat.patch].mesh];
+                return is_updated(object, model.materials[mesh.material].name, options);
+            });
             result.charts.push_back(std::move(chart));
         }
     }

@@ -247,9 +247,11 @@ LightmapChart chart_of(const Scene& scene, FlatPatches patches, const LightmapOp
     chart.requested_density = density_of(scene, first, options);
     chart.columns = texels_along(chart.size.x, chart.requested_density, most);
     chart.rows = texels_along(chart.size.y, chart.requested_density, most);
-    const Patch& patch = scene.patches[first];
-    chart.object = patch.object;
-    chart.is_updated = is_updated(scene.objects[patch.object], scene.materials[patch.material].name, options);
+    chart.object = scene.patches[first].object;
+    chart.is_updated = std::any_of(chart.patches.begin(), chart.patches.end(), [&](const FlatPatch& flat) {
+        const Patch& patch = scene.patches[flat.patch];
+        return is_updated(scene.objects[patch.object], scene.materials[patch.material].name, options);
+    });
     return chart;
 }
 

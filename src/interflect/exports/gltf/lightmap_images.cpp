@@ -75,8 +75,7 @@ void add_irradiance(GltfDocument& document, const Image& image, const std::strin
         const Rgb texel = image.pixels[i] / images.encoding.scale;
         const float over = largest_channel(texel);
         // An update may exceed the stops of its file
-        const float byte =
-            over > 1 && images.stops > 0 ? std::min(255.0f, std::ceil(std::log2(over) / images.stops * 255)) : 0;
+        const float byte = over > 1 ? std::min(255.0f, std::ceil(std::log2(over) / images.stops * 255)) : 0;
         encoded.pixels[i] = within_display_range(texel / std::exp2(images.stops * byte / 255));
         gains.pixels[i] = Rgb(srgb_decode(byte / 255));  // cancels the sRGB encoding of the codec
         has_gain |= byte > 0;

@@ -162,21 +162,20 @@ void add_images(const std::vector<Image>& images, std::vector<Image>& sum) {
 }
 
 /// Evaluates each light group alone. The lightmap is the exact sum of the images of all groups.
+/// @param baked  Its total images must be black.
 void evaluate_groups(const LightmapTexels& texels, const Scene& scene, const Solution& solution,
-                     const ExportOptions& options, const EarlierLightmap* earlier, BakedImages& baked) {
+                     const ExportOptions& options, BakedImages& baked) {
     Ranks* const ranks = options.monitor.ranks;
     const std::size_t count = solution.group_names.size();
     for (std::size_t g = 0; g < count; ++g) {
         const LightOfGroup group = light_of_group(scene, solution, g);
         const auto fraction = [&](std::size_t i) { return static_cast<double>(i) / static_cast<double>(count); };
         const Monitor monitor = monitor_section(options.monitor, fraction(g), fraction(g + 1));
-        // The total images are black until all groups are evaluated
-        baked.groups.push_back(earlier ? earlier->groups[g] : baked.images);
         // The other ranks make the same scene and solution, and trace a share of the rays until end_shared_light()
         give_order(ranks, {.kind = LightOrder::Kind::group, .group = g});
         try {
             texels.evaluate(group.scene, BakedLight(group.scene, group.solution, options.bake, texel_sampling), monitor,
-                            baked.groups.back());
+                            baked.groups[g]);
         } catch (const Stopped&) {
             // All ranks have stopped. After another error, the caller must end the other ranks (Ranks::abort())
             end_shared_light(ranks);
@@ -277,14 +276,15 @@ BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pa
     if (options.warnings) warn_of_reduced_density(baked.densities, *options.warnings);
     const double all_texels = std::max(1.0, texel_counts.images);  // no division by 0 without charts
     baked.used = texel_counts.charts / all_texels;
-    if (earlier) require_same_layout(*earlier, baked.layout, sizes);
-    if (earlier && !lightmap.groups)
-        baked.images = earlier->images;
-    else
-        for (const Imath::V2i& size : sizes) baked.images.emplace_back(size.x, size.y);
+    for (const Imath::V2i& size : sizes) baked.images.emplace_back(size.x, size.y);
     if (lightmap.content == LightmapContent::density) {
         draw_density(charts, lightmap, baked.images);
         return baked;
+    }
+    if (lightmap.groups) baked.groups.assign(solution.group_names.size(), baked.images);
+    if (earlier) {
+        require_same_layout(*earlier, baked.layout);
+        read_images(*earlier, baked.images, baked.groups);
     }
 
     LightmapTexels texels(lightmap);
@@ -297,7 +297,7 @@ BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pa
     texels.assign_hidden_texels(scene);
 
     if (lightmap.groups)
-        evaluate_groups(texels, scene, solution, options, earlier, baked);
+        evaluate_groups(texels, scene, solution, options, baked);
     else  // the other ranks already have this scene and solution
         texels.evaluate(scene, BakedLight(scene, solution, options.bake, texel_sampling), options.monitor,
                         baked.images);
