@@ -347,7 +347,7 @@ class Update(LitFiles):
         self.assertGreater((old[0] != new[0]).sum(), 0)
 
     def test_keeps_the_scale(self):
-        """The new light exceeds the scale, so it gets gains."""
+        """The new light exceeds the scale, so it gets gains. Seen to fail with the scale of the new light."""
         path = self.lit(plates(), exposure=-8)[1]  # the scale is the brightest texel, 2 m from the light
         before = Glb.read(path).json["materials"][0]["extensions"]["MOZ_lightmap"]
         self.assertNotIn("extras", before)
