@@ -85,10 +85,10 @@ struct LightmapOptions {
     std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
     bool groups =
         false;  ///< Whether to add images of each light group, with the same coordinates; they sum to the total.
-    /// Patterns of names of objects (see LightGroup) or materials whose light is computed anew in an existing file; all
-    /// other texels keep their bytes. The file is an earlier export of the same layout with the same `content`,
-    /// `groups` and light groups, and `image` is .exr. Its exposure and scale stay; ExportOptions::exposure is ignored.
-    /// Empty: all light is computed.
+    /// Patterns of names of objects (see LightGroup) or materials whose light is computed anew in an existing file, in
+    /// all charts that contain such surfaces; all other texels keep their bytes. The file is an earlier export of the
+    /// same layout with the same `content`, `groups` and light groups, and `image` is .exr. Its exposure and scale
+    /// stay; ExportOptions::exposure is ignored. Empty: all light is computed.
     std::vector<std::string> update;
 };
 

@@ -99,7 +99,7 @@ TEST_F(LightmapUpdate, KeepsTheTexelsOfLightGroups) {
     EXPECT_EQ(values.count(30), 1);
 }
 
-/// Seen to fail without each check, and with a checksum without outlines.
+/// Seen to fail without the comparison of names, options and quantity, and with a checksum without outlines.
 TEST_F(LightmapUpdate, OfAnotherLayoutNamesTheDifference) {
     options_.lightmap->update = {"lamp"};
     EXPECT_THAT(refusal(uniform(scene_, 1)), HasSubstr("not there"));
@@ -140,7 +140,7 @@ TEST_F(LightmapUpdate, ComputesWholeCharts) {
     EXPECT_EQ(counts(light()).at(300), (21 + 4) * (21 + 4));
 }
 
-/// Numbers that would make the images invalid, and a name in another folder. Seen to fail without each check.
+/// Numbers that would make the images invalid, and a name in another folder. Seen to fail without these checks.
 TEST_F(LightmapUpdate, RefusesDamagedFiles) {
     write(uniform(scene_, 1));
     const std::string bytes = read_bytes(folder_ / "lit.glb");

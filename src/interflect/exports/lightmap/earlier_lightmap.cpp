@@ -73,7 +73,7 @@ EarlierLightmap read(const fs::path& path, const Json& description, const Lightm
     return earlier;
 }
 
-/// Replaces images by those of the files.
+/// Replaces `images` by the contents of the files.
 void read_images(const EarlierLightmap& earlier, const std::vector<fs::path>& files, std::vector<Image>& images) {
     bool is_alike = files.size() == images.size();
     for (std::size_t i = 0; is_alike && i < files.size(); ++i) {

@@ -14,12 +14,13 @@ namespace interflect::detail {
 
 /// Lightmap of the file that an export updates (LightmapOptions::update).
 struct EarlierLightmap {
-    std::filesystem::path path;                              ///< Path of the glTF file.
-    Json layout;                                             ///< Description of its layout (layout_of()).
-    float exposure, scale, stops;                            ///< As in LightmapImages; finite, scale > 0, stops >= 0.
-    double covered;                                          ///< BakedImages::covered
-    std::vector<std::filesystem::path> images;               ///< Paths of the unclamped images.
-    std::vector<std::vector<std::filesystem::path>> groups;  ///< Those of each light group, [group][image].
+    std::filesystem::path path;                 ///< Path of the glTF file.
+    Json layout;                                ///< Description of its layout (layout_of()).
+    float exposure, scale, stops;               ///< As in LightmapImages; finite, scale > 0, stops >= 0.
+    double covered;                             ///< BakedImages::covered
+    std::vector<std::filesystem::path> images;  ///< Paths of the unclamped images.
+    std::vector<std::vector<std::filesystem::path>>
+        groups;  ///< Paths of the images of each light group, [group][image].
 };
 
 /// Returns the name of the quantity of images in files.
