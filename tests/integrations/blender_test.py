@@ -18,7 +18,7 @@ BLENDER = [BPY] if BPY else ["blender", "-b", "--factory-startup", "--python-exi
 CASES = (
     *("vertex", "lightmap", "sheets_vertex", "sheets_lightmap", "sheets_magnified", "moves", "three_vertex", "three_lightmaps"),
     *("visibility", "user", "scenes", "instances", "panels", "plain_world", "hdri_world", "warnings", "failures", "authored"),
-    *("cancel", "disable"),
+    *("objects", "selected", "preview", "cancel", "disable"),
 )
 
 
@@ -94,6 +94,37 @@ class Addon(unittest.TestCase):
         beside = 0.5 / math.pi * 2 / (2**2 + 0.4**2) ** 1.5
         self.assertAlmostEqual(found["mirror"] / (0.8 * beside), 1, delta=0.05)
         self.assertEqual(found["lamps"], 0)
+
+    def test_objects_show_light_themselves(self):
+        """A lamp of 1 cd is 2 m above x = 0. Plates have a reflectance of 0.5; `bare`, without a material, has 0.8."""
+        found = self.blender("objects")
+        for bake in ("first", "second"):
+            self.assertEqual(found[bake], ["FINISHED"])
+        for step in ("undone", "redone", "same"):
+            self.assertTrue(found[step], step)
+        self.assertEqual(found["lit"], ["bare", "bent", "drawn", "plain"])
+        self.assertEqual(found["copies"], ["first", "leaf", "leaf", "row", "second"])
+        self.assertEqual(found["hidden"], ["first", "left", "right", "row", "second"])
+        self.assertEqual([warning.split(": ")[-1] for warning in found["warnings"]], ["left, right", "row", "first, second"])
+        for x, y, radiance in found["radiance"]:
+            reflectance = 0.8 if (x, y) == (1.2, 0) else 0.5
+            expected = reflectance / math.pi * 2 / (x**2 + y**2 + 2**2) ** 1.5
+            self.assertAlmostEqual(radiance / expected, 1, delta=0.03, msg=f"at ({x}, {y})")
+        self.assertEqual(found["after"], found["before"])
+
+    def test_light_of_selected_objects(self):
+        found = self.blender("selected")
+        self.assertIn("No object that renders is selected", found["nothing"])
+        self.assertEqual(found["lit"], ["plain"])
+        for kind in ("LIGHTMAP", "VERTEX"):
+            lit, hidden = found[kind]
+            self.assertEqual([name for name in lit if name != "scene"], ["plain"])
+            self.assertEqual(hidden, ["plain"])
+
+    def test_a_preview_comes_first(self):
+        found = self.blender("preview")
+        self.assertEqual(found["result"], ["FINISHED"])
+        self.assertEqual(found["files"], ["preview.glb", "lit.glb"])
 
     def test_sheets_lit_on_both_sides_are_opaque_in_cycles(self):
         """Both sides of a sheet are in one place in the file, where Cycles skips one of them."""

@@ -26,7 +26,8 @@ def start() -> None:
 
 start()
 import interflect
-from interflect import area_lamps, exchange, lit_sides, pipeline, result, versions
+from interflect import area_lamps, exchange, pipeline, result, versions
+from interflect.lit import sides as lit_sides
 
 KINDS_OF_DATA = ("objects", "collections", "meshes", "cameras", "lights", "materials", "node_groups", "images", "scenes", "worlds")
 
@@ -56,9 +57,10 @@ def put(name, data, at):
     return made
 
 
-def bake(kind: str = "VERTEX", rays: float = 0.2) -> dict:
+def bake(kind: str = "VERTEX", rays: float = 0.2, target: str = "COPY", selected: bool = False, preview: bool = False) -> dict:
     settings = bpy.context.scene.interflect
-    settings.rays, settings.kind, settings.texels_per_metre = rays, kind, 8
+    settings.rays, settings.kind, settings.texels_per_metre, settings.target = rays, kind, 8, target
+    settings.use_selected, settings.use_preview = selected, preview
     try:
         return {"result": list(bpy.ops.interflect.bake()), "said": ""}
     except RuntimeError as error:  # Blender reports an operator's error to scripts this way
@@ -94,7 +96,7 @@ def brightness(name: str) -> float:
 
 
 def in_file() -> dict:
-    return {kind: sorted(data.name for data in getattr(bpy.data, kind)) for kind in KINDS_OF_DATA}
+    return {kind: sorted({data.name for data in getattr(bpy.data, kind)} - {"Render Result"}) for kind in KINDS_OF_DATA}
 
 
 def shown() -> dict:
@@ -403,6 +405,112 @@ def seen_from(at, turn) -> float:
     return picture(width=1, height=1)[0]
 
 
+def make_plates() -> None:
+    """Makes a lamp of 1 cd above plates. `bare` has no material, `first` and `second` have one mesh, `left` and `right` are
+    instances. `row` and `drawn` have modifiers that add faces, `bent` has one that moves vertices; `drawn` has a lightmap
+    layout."""
+    lamp = bpy.data.lights.new("lamp", "POINT")
+    lamp.energy = 4 * math.pi
+    put("lamp", lamp, (0, 0, 2))
+    for i, name in enumerate(("plain", "bare", "first", "second", "row", "bent", "drawn")):
+        bpy.ops.mesh.primitive_plane_add(size=1, location=(1.2 * i, 0, 0))
+        made = bpy.context.object
+        made.name = made.data.name = name
+        if name != "bare":
+            made.data.materials.append(bpy.data.materials.get("half") or grey_material("half", 0.5))
+    bpy.data.objects["second"].data = bpy.data.objects["first"].data
+    bpy.data.meshes.remove(bpy.data.meshes["second"])
+    bpy.data.objects["row"].modifiers.new("two", "ARRAY").relative_offset_displace = (0, 1.2, 0)
+    bpy.data.objects["bent"].modifiers.new("bent", "SIMPLE_DEFORM").deform_method = "TAPER"
+    drawn = bpy.data.objects["drawn"]
+    drawn.location = (1.2, 2, 0)
+    for corner in drawn.data.uv_layers.new(name="layout").data:
+        corner.uv = 0.5 + 0.5 * (corner.uv[1] - 0.5), 0.25 + 0.5 * corner.uv[0]
+    drawn.modifiers.new("finer", "SUBSURF").subdivision_type = "SIMPLE"
+    leaves = bpy.data.collections.new("leaves")
+    leaves.objects.link(bpy.data.objects.new("leaf", bpy.data.objects["plain"].data.copy()))
+    leaves.objects["leaf"].data.name = "leaf"
+    for name, x in (("left", -1.2), ("right", -2.4)):
+        empty = put(name, None, (x, 0, 0))
+        empty.instance_type, empty.instance_collection = "COLLECTION", leaves
+
+
+def grey_material(name: str, reflectance: float):
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    surface = material.node_tree.nodes["Principled BSDF"]
+    surface.inputs["Base Color"].default_value = (reflectance, reflectance, reflectance, 1)
+    return material
+
+
+def surfaces() -> dict:
+    """Returns the materials and the UV maps of each mesh object."""
+    meshes = [o for o in bpy.context.scene.objects if o.type == "MESH"]
+    return {o.name: [[slot.name for slot in o.material_slots], [uv.name for uv in o.data.uv_layers]] for o in meshes}
+
+
+def state() -> list:
+    return [in_file(), shown(), surfaces()]
+
+
+def objects() -> dict:
+    """Light in the objects themselves, twice; undo, redo and *Clear*."""
+    make_plates()
+    before = state()
+    bpy.ops.ed.undo_push(message="plates")
+    found = {"first": bake("LIGHTMAP", target="OBJECTS")["result"]}
+    bpy.ops.ed.undo_push(message="bake")
+    baked = state()
+    bpy.ops.ed.undo()
+    found["undone"] = before == state()
+    bpy.ops.ed.redo()
+    found["redone"] = baked == state()
+    found["second"] = bake("LIGHTMAP", target="OBJECTS")["result"]
+    found["same"] = baked == state()
+    found |= {
+        "lit": sorted(o.name for o in bpy.context.scene.objects if result.LIT in o and not result.is_result(o)),
+        "copies": sorted(o.name.split(".")[0] for o in lit_meshes()),
+        "hidden": sorted(o.name for o in bpy.context.scene.objects if result.HIDDEN in o),
+        "warnings": result.warnings(bpy.context.scene),
+    }
+    bpy.data.objects["lamp"].hide_render = True
+    places = [(-2.4, 0), (0, 0), (1.2, 0), (2.4, 0), (0.9, 1.7), (1.5, 2.3)]
+    found["radiance"] = [(x, y, seen_from((x, y, 1), (0, 0, 0))) for x, y in places]
+    bpy.data.objects["lamp"].hide_render = False
+    for camera in [o for o in bpy.data.objects if o.type == "CAMERA"]:
+        data = camera.data
+        bpy.data.objects.remove(camera)
+        bpy.data.cameras.remove(data)
+    bpy.ops.interflect.clear()
+    return {**found, "before": before, "after": state()}
+
+
+def selected() -> dict:
+    """Light of a selected object, shown by the object and by a copy. A bake without a selection fails."""
+    make_plates()
+    bpy.ops.object.select_all(action="DESELECT")
+    found = {"nothing": bake("LIGHTMAP", selected=True)["said"]}
+    bpy.data.objects["plain"].select_set(True)
+    bake("LIGHTMAP", target="OBJECTS", selected=True)
+    found["lit"] = [o.name for o in bpy.context.scene.objects if result.LIT in o]
+    for kind in ("LIGHTMAP", "VERTEX"):
+        bake(kind, selected=True)
+        hidden = [o.name for o in bpy.context.scene.objects if result.HIDDEN in o]
+        found[kind] = [[o.name.split(".")[0] for o in lit_collection().objects], hidden]
+    return found
+
+
+def preview() -> dict:
+    """Returns the files whose light is shown."""
+    make_room()
+    shown_files, whole, interval = [], exchange.show_light, interflect.POLL
+    interflect.POLL = 0.01
+    exchange.show_light = lambda scene, file, *rest: shown_files.append(file.name) or whole(scene, file, *rest)
+    found = bake("LIGHTMAP", preview=True)
+    exchange.show_light, interflect.POLL = whole, interval
+    return {**found, "files": shown_files}
+
+
 def warnings() -> dict:
     make_room()
     metal = bpy.data.materials.new("metal")
@@ -539,7 +647,7 @@ CASES = {
     "three_vertex": lambda: three_bakes("VERTEX"),
     "three_lightmaps": lambda: three_bakes("LIGHTMAP"),
     **{each.__name__: each for each in (authored, moves, visibility, user, scenes, instances, panels, warnings, failures)},
-    **{each.__name__: each for each in (plain_world, hdri_world, cancel, disable)},
+    **{each.__name__: each for each in (objects, selected, preview, plain_world, hdri_world, cancel, disable)},
 }
 found = {}
 for case in cases:

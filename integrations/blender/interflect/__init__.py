@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 
 from . import exchange, pipeline, result, world
-from .lit_materials import glTF2ImportUserExtension  # the importer looks for it here
+from .lit.materials import glTF2ImportUserExtension  # the importer looks for it here
 
 bl_info = {
     "name": "Interflect",
@@ -49,9 +49,24 @@ class BakeSettings(bpy.types.PropertyGroup):
             ("VERTEX", "Vertex colours", "A mesh as fine as the light on it"),
         ],
     )
+    target: bpy.props.EnumProperty(
+        name="Target",
+        items=[
+            ("COPY", "Lit copy", "A collection replaces the objects, with each side of a face lit"),
+            ("OBJECTS", "Objects themselves", "A UV map and images, in copies of the objects' own materials"),
+        ],
+    )
+    use_selected: bpy.props.BoolProperty(
+        name="Selected objects only",
+        default=False,
+        description="Show the light of the selected objects only; the others still give and reflect light",
+    )
     texels_per_metre: bpy.props.FloatProperty(name="Texels per metre", default=16, min=0.1, max=1000)
     gather: bpy.props.BoolProperty(
         name="Final gathering", default=False, description="Cleaner lightmaps, which take much longer"
+    )
+    use_preview: bpy.props.BoolProperty(
+        name="Preview", default=True, description="Show the light of a sixteenth of the rays first"
     )
 
 
@@ -75,7 +90,9 @@ class Bake(bpy.types.Operator):
         """Without a user interface: waits for the end of the bake."""
         if not self._start(context):
             return {"CANCELLED"}
-        Bake.running.wait()
+        while Bake.running.is_running():
+            Bake.running.wait(POLL)
+            self._show_preview()
         return self._finish()
 
     def invoke(self, context, _event):
@@ -98,6 +115,7 @@ class Bake(bpy.types.Operator):
             context.window_manager.progress_update(percent)
             context.workspace.status_text_set(f"Interflect: {Bake.running.stage} {percent:.0f}%  (Esc: cancel)")
             _redraw_panels(context)
+            self._show_preview()
             return {"RUNNING_MODAL"}
         context.window_manager.event_timer_remove(self._timer)
         _end_progress(context)
@@ -120,9 +138,12 @@ class Bake(bpy.types.Operator):
         self._scene = scene.name  # undo replaces the scene itself
         Bake.folder = Path(tempfile.mkdtemp(prefix="interflect-"))
         file, solution, self._lit = (self.folder / name for name in ("scene.glb", "light.h5", "lit.glb"))
+        is_copied = settings.kind == "VERTEX" or settings.target == "COPY"
+        selected = {each.name for each in context.view_layer.objects.selected} if settings.use_selected else None
+        self._receivers, self._has_preview = exchange.Receivers(is_copied, selected), False
         try:
-            exported = exchange.export_scene(scene, file)
-            self._baked, self._warnings = exported.objects, exported.warnings
+            self._exported = exchange.export_scene(scene, file, self._receivers)
+            self._warnings = self._exported.warnings
             wanted = pipeline.Settings(
                 command=context.preferences.addons[__name__].preferences.command,
                 rays=round(settings.rays * 1e6),
@@ -130,6 +151,8 @@ class Bake(bpy.types.Operator):
                 kind=settings.kind,
                 texels_per_metre=settings.texels_per_metre,
                 gather=settings.gather,
+                is_copied=is_copied,
+                has_preview=settings.use_preview,
             )
             before = self._world(scene, wanted)
         except Exception as error:
@@ -165,32 +188,46 @@ class Bake(bpy.types.Operator):
         wanted.options += ["--environment", str(environment), "--zenith", "0,1,0"]
         return stages
 
+    def _show_preview(self):
+        file, Bake.running.preview = Bake.running.preview, None
+        scene = bpy.data.scenes.get(self._scene)
+        if not (file and scene):
+            return
+        try:
+            exchange.show_light(scene, file, self._exported, self._receivers)
+            self._has_preview = True
+        except RuntimeError as error:  # reported by the importer
+            Bake.running.fail(str(error))
+
     def _finish(self):
         done = Bake.running
         scene = bpy.data.scenes.get(self._scene)
         in_folder = str(self.folder) + os.sep
         of_command = [pipeline.for_blender(each, in_folder) for each in done.warnings]
-        warnings = list(dict.fromkeys(self._warnings + of_command))
         try:
             if done.error:
                 self.report({"ERROR"}, pipeline.for_blender(str(done.error), in_folder).removeprefix("error: "))
-                return {"CANCELLED"}
+                return self._unfinished()
             if done.is_cancelled:
                 self.report({"INFO"}, "Interflect: cancelled")
-                return {"CANCELLED"}
+                return self._unfinished()
             if scene is None:
                 self.report({"ERROR"}, f"The scene '{self._scene}' is there no longer: its light is lost")
                 return {"CANCELLED"}
+            of_scene = exchange.show_light(scene, self._lit, self._exported, self._receivers)
+            warnings = list(dict.fromkeys(self._warnings + of_command + of_scene))
+            result.set_warnings(scene, warnings)
             for warning in warnings:
                 self.report({"WARNING"}, warning)
-            exchange.import_lit(scene, self._lit, self._baked, warnings)
             return {"FINISHED"}
         except RuntimeError as error:  # reported by the importer
-            result.remove(scene)
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         finally:
             self._end()
+
+    def _unfinished(self):
+        return {"FINISHED"} if self._has_preview else {"CANCELLED"}  # a preview stays, as a step to undo
 
     @classmethod
     def _end(cls):
@@ -214,7 +251,7 @@ class Cancel(bpy.types.Operator):
 
 
 class Clear(bpy.types.Operator):
-    """Remove the lit surfaces and show the scene as it was"""
+    """Remove the light and show the scene as it was"""
 
     bl_idname = "interflect.clear"
     bl_label = "Clear"
@@ -242,8 +279,11 @@ class Panel(bpy.types.Panel):
         layout.prop(settings, "use_camera")
         layout.prop(settings, "kind")
         if settings.kind == "LIGHTMAP":
+            layout.prop(settings, "target")
             layout.prop(settings, "texels_per_metre")
             layout.prop(settings, "gather")
+        layout.prop(settings, "use_selected")
+        layout.prop(settings, "use_preview")
         row = layout.row()
         if Bake.running:
             row.label(text=f"{Bake.running.stage} {100 * Bake.running.fraction:.0f}%")

@@ -1,29 +1,44 @@
-"""Exchange between Blender's scene and files: export for the solver, and import of lit meshes."""
+"""Exchange between Blender's scene and files: export for the solver, and import of the light."""
 
-import json
-import struct
+from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
 
-from . import area_lamps, lit_sides, result, versions
+from . import area_lamps, result, versions
+from .gltf_file import GltfFile
+from .lit import copies, objects
 from .visibility import only_rendered
 
-LIT_COLLECTION = "Interflect"
 EXPORTED_TYPES = ("MESH", "CURVE", "SURFACE", "FONT", "LIGHT")
 LEFT_OUT_TYPES = ("META", "CURVES", "VOLUME", "POINTCLOUD", "GPENCIL")
+NO_MATERIAL = {  # as Blender shows surfaces without one
+    "name": "no material",
+    "doubleSided": True,
+    "pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.8, 0.8, 1], "metallicFactor": 0},
+}
 
 
+@dataclass
+class Receivers:
+    """Objects whose light is shown."""
+
+    is_copied: bool = True  # shown by lit copies, which represent lamps too, else by the objects
+    selected: set[str] | None = None  # names of the objects, or None for all objects
+
+
+@dataclass
 class Exported:
-    def __init__(self, objects: list[str], warnings: list[str]):
-        self.objects, self.warnings = objects, warnings
+    objects: list[str]  # names of the objects that lit copies represent
+    unlit: set[str]  # names that the solver gives to the meshes without light
+    warnings: list[str]
 
 
-def export_scene(scene, path: Path) -> Exported:
+def export_scene(scene, path: Path, receivers: Receivers = Receivers()) -> Exported:
     """Writes the rendered objects of the current scene at its frame, without an earlier result and with panels for area
     lamps. Watts in Blender are lumens in the file."""
-    with only_rendered(scene) as rendered, area_lamps.as_panels(scene) as warnings:
-        objects = [o for o in rendered if o.type in EXPORTED_TYPES or o.instance_type == "COLLECTION"]
+    with result.taken_off(scene), only_rendered(scene) as rendered, area_lamps.as_panels(scene) as warnings:
+        lit = {o.name: o for o in rendered if o.type in EXPORTED_TYPES or o.instance_type == "COLLECTION"}
         warnings += _left_out(rendered)
         bpy.ops.export_scene.gltf(
             filepath=str(path),
@@ -36,7 +51,40 @@ def export_scene(scene, path: Path) -> Exported:
             export_current_frame=True,
             **versions.watts_as_lumens(bpy.ops.export_scene.gltf),
         )
-        return Exported([o.name for o in objects], warnings)
+        file = GltfFile(path)
+        _add_material(file)
+        unlit = _leave_unlit(file, lit, receivers)
+        file.write(path)
+        names = [name for name, o in lit.items() if _gets_light(o, receivers)]
+        if not names and receivers.selected is not None:
+            raise RuntimeError("No object that renders is selected")
+        return Exported(names, unlit, warnings)
+
+
+def _gets_light(owner, receivers) -> bool:
+    """@param owner  An object of the scene, or None for the panel of an area lamp."""
+    if receivers.selected is None:
+        return owner is not None or receivers.is_copied
+    return owner is not None and owner.type != "LIGHT" and owner.name in receivers.selected
+
+
+def _leave_unlit(file, objects, receivers) -> set[str]:
+    """Requests no lightmap for meshes whose light is not shown. Returns their names in the solver."""
+    unlit = set()
+    for shown in file.shown_meshes():
+        if not _gets_light(shown.owner(objects), receivers):
+            shown.node["extras"] = {"texels_per_metre": 0}
+            unlit.add(".".join(shown.names))
+    return unlit
+
+
+def _add_material(file) -> None:
+    """Gives surfaces without a material the one that Blender shows."""
+    materials = file.json.setdefault("materials", [])
+    materials.append(NO_MATERIAL)
+    for mesh in file.json.get("meshes", []):
+        for primitive in mesh["primitives"]:
+            primitive.setdefault("material", len(materials) - 1)
 
 
 def _left_out(rendered):
@@ -44,38 +92,29 @@ def _left_out(rendered):
     if shapes:
         yield f"Neither mesh nor curve nor text, and left out: {', '.join(shapes)}"
     instances = bpy.context.evaluated_depsgraph_get().object_instances
-    by_nodes = {i.parent.name for i in instances if i.is_instance and not i.parent.is_instancer}.difference(shapes)
+    by_nodes = {i.parent.name for i in instances if i.is_instance and not i.parent.is_instancer and not _is_own_mesh(i)}
+    by_nodes.difference_update(shapes)
     if by_nodes:
         yield f"Instances that geometry nodes make are left out unless nodes make them real: {', '.join(sorted(by_nodes))}"
 
 
+def _is_own_mesh(instance) -> bool:
+    """Returns whether an instance is the mesh of a curve or text."""
+    return instance.parent.type in ("CURVE", "SURFACE", "FONT") and instance.object.original == instance.parent.original
+
+
 def camera_names(path: Path) -> list[str]:
-    content = path.read_bytes()
-    (length,) = struct.unpack_from("<I", content, 12)  # length of the JSON, after the headers of the file and the chunk
-    nodes = json.loads(content[20 : 20 + length]).get("nodes", [])
-    return [node["name"] for node in nodes if "camera" in node]
+    return [node["name"] for node in GltfFile(path).json.get("nodes", []) if "camera" in node]
 
 
-def import_lit(scene, path: Path, replaced: list[str], warnings: list[str]) -> None:
-    """Puts the lit meshes of a file into their own collection, which replaces an earlier one. Hides the objects that
-    they represent."""
+def show_light(scene, path: Path, exported: Exported, receivers: Receivers) -> list[str]:
+    """Replaces the result of a scene by the light of a file. Returns warnings."""
     result.remove(scene)
-    with result.marking():
-        # A temporary scene shields the user's units, renderer, selection and active collection from the importer.
-        temporary = bpy.data.scenes.new(LIT_COLLECTION)
-        lit = bpy.data.collections.new(LIT_COLLECTION)
-        try:
-            with bpy.context.temp_override(scene=temporary, view_layer=temporary.view_layers[0]):
-                bpy.ops.import_scene.gltf(filepath=str(path), **versions.watts_as_lumens(bpy.ops.import_scene.gltf))
-            for made in temporary.objects:
-                made.select_set(False, view_layer=temporary.view_layers[0])
-                if made.type not in ("CAMERA", "LIGHT"):
-                    lit.objects.link(made)
-            temporary.view_layers[0].update()  # computes the places of the objects
-            lit_sides.separate(lit.objects)
-            scene.collection.children.link(lit)
-        finally:
-            bpy.data.scenes.remove(temporary)
-    result.purge()  # removes the file's cameras and lights
-    lit[result.WARNINGS] = "\n".join(warnings)
-    result.hide(scene, replaced)
+    try:
+        if receivers.is_copied:
+            copies.show(scene, path, exported.objects, exported.unlit)
+            return []
+        return objects.show(scene, path)
+    except RuntimeError:
+        result.remove(scene)
+        raise

@@ -1,14 +1,21 @@
-"""The result of a bake in Blender's file: its data, and the hidden objects that it represents.
+"""The result of a bake in Blender's file: its data, the hidden objects that it represents, and objects that show light.
 
-Custom properties mark both. They survive renaming, manual deletion, undo and saving."""
+Custom properties mark all. They survive renaming, manual deletion, undo and saving."""
 
 from contextlib import contextmanager
 
 import bpy
+import numpy
 
+from .lit.arrays import read
+
+COLLECTION = "Interflect"  # of lit copies
+UV_MAP = "Interflect"  # of objects that show light themselves
 RESULT = "interflect_result"  # marks data that a bake made
 HIDDEN = "interflect_hidden"  # marks objects that a bake hid: names of the view layers that showed them, one per line
-WARNINGS = "interflect_warnings"  # of the result's collection: one per line
+LIT = "interflect_lit"  # marks objects that show light themselves: their number of material slots before
+ORIGINAL = "interflect_original"  # of a lit material: the material that it replaces
+WARNINGS = "interflect_warnings"  # of the scene's last bake: one per line
 
 KINDS = ("collections", "objects", "meshes", "cameras", "lights", "materials", "node_groups", "images")
 
@@ -34,7 +41,11 @@ def collections(scene) -> list:
 
 
 def warnings(scene) -> list[str]:
-    return [warning for collection in collections(scene) for warning in collection.get(WARNINGS, "").splitlines()]
+    return scene.get(WARNINGS, "").splitlines()
+
+
+def set_warnings(scene, warnings: list[str]) -> None:
+    scene[WARNINGS] = "\n".join(warnings)
 
 
 def hide(scene, names) -> None:
@@ -48,8 +59,57 @@ def hide(scene, names) -> None:
             original.hide_set(True, view_layer=layer)
 
 
+def leave_edit_mode() -> None:
+    """Writes the user's edits to the meshes, which can only be changed afterwards."""
+    if bpy.context.mode.startswith("EDIT"):
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def put_on(lit, materials, coordinates) -> None:
+    """Shows light in an object: a material in each slot, and coordinates in a UV map."""
+    slots = lit[LIT] = len(lit.data.materials)
+    for slot, material in zip(lit.material_slots, materials[:slots]):
+        slot.material = material
+    for material in materials[slots:]:
+        lit.data.materials.append(material)
+    if coordinates is not None:
+        layers = lit.data.uv_layers
+        active = layers.active_index
+        layers.new(name=UV_MAP, do_init=False).data.foreach_set("uv", coordinates.ravel())
+        layers.active_index = max(active, 0)
+
+
+def take_off(lit):
+    """Removes the additions of `put_on()`. Returns its arguments."""
+    leave_edit_mode()
+    slots, materials = lit.pop(LIT), [slot.material for slot in lit.material_slots]
+    for slot in lit.material_slots:
+        if slot.material and is_result(slot.material):
+            slot.material = slot.material.get(ORIGINAL)
+    while len(lit.data.materials) > slots and lit.data.materials[-1] is None:
+        lit.data.materials.pop()
+    lit.data = lit.data  # counts the slots of the object again
+    layers, coordinates = lit.data.uv_layers, None
+    if UV_MAP in layers:  # a linked duplicate has lost it with the first object
+        coordinates = read(layers[UV_MAP].data, "uv", numpy.float32, 2)
+        layers.remove(layers[UV_MAP])
+    return materials, coordinates
+
+
+@contextmanager
+def taken_off(scene):
+    """Shows objects without their light in the `with` block."""
+    light = [(each, take_off(each)) for each in scene.objects if LIT in each]
+    try:
+        yield
+    finally:
+        for each, (materials, coordinates) in reversed(light):
+            put_on(each, materials, coordinates)
+
+
 def remove(scene) -> None:
-    """Removes the result of a scene with its unused data, and shows the objects that it represents."""
+    """Removes the result of a scene with its unused data, and shows the objects as before."""
+    scene.pop(WARNINGS, None)
     bpy.data.batch_remove([made for made in scene.objects if is_result(made)])
     for collection in collections(scene):
         for kept in collection.objects:  # put there by the user
@@ -59,6 +119,8 @@ def remove(scene) -> None:
             if kept.name not in scene.collection.children:
                 scene.collection.children.link(kept)
         bpy.data.collections.remove(collection)
+    for lit in [each for each in scene.objects if LIT in each]:
+        take_off(lit)
     purge()
     members = [(layer, set(layer.objects)) for layer in scene.view_layers]
     for original in [each for each in scene.objects if HIDDEN in each]:

@@ -4,6 +4,8 @@ import bmesh
 import numpy
 from mathutils import Vector
 
+from .arrays import read
+
 # Distance by which each side moves, relative to the largest coordinate of the lit meshes. Behind a transparent hit,
 # Cycles skips hits closer than its rounding. A room of 4 m lost pixels at 2^-24 and none at 2^-20; this is 4 times
 # that, 0.015 mm.
@@ -40,8 +42,8 @@ def _split_between_planes(mesh) -> None:
 
 def _move(mesh, distance: float) -> None:
     """Moves the planes of a mesh forward, and their rims outwards."""
-    places = _read(mesh.vertices, "co", numpy.float32, 3)
-    starts, edges, normals = _read(mesh.loops, "vertex_index", numpy.int32, 1), _edges(mesh), _normals(mesh)
+    places = read(mesh.vertices, "co", numpy.float32, 3)
+    starts, edges, normals = read(mesh.loops, "vertex_index", numpy.int32, 1), _edges(mesh), _normals(mesh)
     ends = numpy.roll(starts.reshape(-1, 3), -1, axis=1).ravel()
     outwards = numpy.cross(places[ends] - places[starts], normals)
     outwards /= numpy.maximum(_lengths(outwards), numpy.finfo(numpy.float32).tiny)
@@ -57,20 +59,14 @@ def _move(mesh, distance: float) -> None:
     mesh.update()
 
 
-def _read(data, name: str, kind, width: int):
-    values = numpy.empty(len(data) * width, kind)
-    data.foreach_get(name, values)
-    return values.reshape(-1, width) if width > 1 else values
-
-
 def _edges(mesh):
     """Returns the edge of each loop."""
-    return _read(mesh.loops, "edge_index", numpy.int32, 1)
+    return read(mesh.loops, "edge_index", numpy.int32, 1)
 
 
 def _normals(mesh):
     """Returns the normal of each loop's triangle."""
-    return numpy.repeat(_read(mesh.polygons, "normal", numpy.float32, 3), 3, axis=0)
+    return numpy.repeat(read(mesh.polygons, "normal", numpy.float32, 3), 3, axis=0)
 
 
 def _lengths(vectors):

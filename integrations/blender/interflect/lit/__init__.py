@@ -1,0 +1,1 @@
+"""How a result shows light: copies of the surfaces, or the scene's own objects."""
