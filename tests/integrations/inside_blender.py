@@ -406,29 +406,36 @@ def seen_from(at, turn) -> float:
 
 
 def make_plates() -> None:
-    """Makes a lamp of 1 cd above plates. `bare` has no material, `first` and `second` have one mesh, `left` and `right` are
-    instances. `row` and `drawn` have modifiers that add faces, `bent` has one that moves vertices; `drawn` has a lightmap
-    layout."""
+    """Makes a lamp of 1 cd above plates. A face of `plain` has a later slot than the only one. `bare` has no material, and
+    `bent` has one with disabled nodes. `first` and `second` have one mesh, `left` and `right` are instances. `row` and
+    `drawn` have modifiers that add faces, that of `bent` moves vertices. `drawn` has a lightmap layout, and `named`
+    another map, with the name of the add-on's UV map."""
     lamp = bpy.data.lights.new("lamp", "POINT")
     lamp.energy = 4 * math.pi
     put("lamp", lamp, (0, 0, 2))
-    for i, name in enumerate(("plain", "bare", "first", "second", "row", "bent", "drawn")):
-        bpy.ops.mesh.primitive_plane_add(size=1, location=(1.2 * i, 0, 0))
+    for i, name in enumerate(("plain", "bare", "first", "second", "row", "bent", "drawn", "named")):
+        faces = 2 if name == "plain" else 1
+        bpy.ops.mesh.primitive_grid_add(x_subdivisions=faces, y_subdivisions=1, size=1, location=(1.2 * i, 0, 0))
         made = bpy.context.object
         made.name = made.data.name = name
         if name != "bare":
             made.data.materials.append(bpy.data.materials.get("half") or grey_material("half", 0.5))
+    bpy.data.objects["plain"].data.polygons[1].material_index = 1
+    bpy.data.objects["named"].data.uv_layers[0].name = result.UV_MAP
+    disabled = bpy.data.objects["bent"].data.materials[0] = grey_material("disabled", 0.5)
+    disabled.node_tree.nodes.clear()
+    disabled.use_nodes = False
     bpy.data.objects["second"].data = bpy.data.objects["first"].data
     bpy.data.meshes.remove(bpy.data.meshes["second"])
     bpy.data.objects["row"].modifiers.new("two", "ARRAY").relative_offset_displace = (0, 1.2, 0)
     bpy.data.objects["bent"].modifiers.new("bent", "SIMPLE_DEFORM").deform_method = "TAPER"
     drawn = bpy.data.objects["drawn"]
     drawn.location = (1.2, 2, 0)
-    for corner in drawn.data.uv_layers.new(name="layout").data:
+    for corner in drawn.data.uv_layers.new(name=result.UV_MAP).data:
         corner.uv = 0.5 + 0.5 * (corner.uv[1] - 0.5), 0.25 + 0.5 * corner.uv[0]
     drawn.modifiers.new("finer", "SUBSURF").subdivision_type = "SIMPLE"
     leaves = bpy.data.collections.new("leaves")
-    leaves.objects.link(bpy.data.objects.new("leaf", bpy.data.objects["plain"].data.copy()))
+    leaves.objects.link(bpy.data.objects.new("leaf", bpy.data.objects["row"].data.copy()))
     leaves.objects["leaf"].data.name = "leaf"
     for name, x in (("left", -1.2), ("right", -2.4)):
         empty = put(name, None, (x, 0, 0))
@@ -444,9 +451,13 @@ def grey_material(name: str, reflectance: float):
 
 
 def surfaces() -> dict:
-    """Returns the materials and the UV maps of each mesh object."""
-    meshes = [o for o in bpy.context.scene.objects if o.type == "MESH"]
-    return {o.name: [[slot.name for slot in o.material_slots], [uv.name for uv in o.data.uv_layers]] for o in meshes}
+    """Returns the materials, the UV maps and the custom properties of each mesh object."""
+
+    def surface(shown):
+        maps = shown.data.uv_layers
+        return [[slot.name for slot in shown.material_slots], maps.active_index, [uv.name for uv in maps], sorted(shown.keys())]
+
+    return {o.name: surface(o) for o in bpy.context.scene.objects if o.type == "MESH"}
 
 
 def state() -> list:

@@ -12,7 +12,7 @@ from .visibility import only_rendered
 
 EXPORTED_TYPES = ("MESH", "CURVE", "SURFACE", "FONT", "LIGHT")
 LEFT_OUT_TYPES = ("META", "CURVES", "VOLUME", "POINTCLOUD", "GPENCIL")
-NO_MATERIAL = {  # as Blender shows surfaces without one
+NO_MATERIAL = {  # Blender's default
     "name": "no material",
     "doubleSided": True,
     "pbrMetallicRoughness": {"baseColorFactor": [0.8, 0.8, 0.8, 1], "metallicFactor": 0},
@@ -24,7 +24,7 @@ class Receivers:
     """Objects whose light is shown."""
 
     is_copied: bool = True  # shown by lit copies, which represent lamps too, else by the objects
-    selected: set[str] | None = None  # names of the objects, or None for all objects
+    selected: set[str] | None = None  # names of the objects; None: all objects
 
 
 @dataclass
@@ -62,7 +62,7 @@ def export_scene(scene, path: Path, receivers: Receivers = Receivers()) -> Expor
 
 
 def _gets_light(owner, receivers) -> bool:
-    """@param owner  An object of the scene, or None for the panel of an area lamp."""
+    """@param owner  An object of the scene; None for the panel of an area lamp."""
     if receivers.selected is None:
         return owner is not None or receivers.is_copied
     return owner is not None and owner.type != "LIGHT" and owner.name in receivers.selected
@@ -79,7 +79,7 @@ def _leave_unlit(file, objects, receivers) -> set[str]:
 
 
 def _add_material(file) -> None:
-    """Gives surfaces without a material the one that Blender shows."""
+    """Adds Blender's default material to surfaces without a material."""
     materials = file.json.setdefault("materials", [])
     materials.append(NO_MATERIAL)
     for mesh in file.json.get("meshes", []):
@@ -115,6 +115,6 @@ def show_light(scene, path: Path, exported: Exported, receivers: Receivers) -> l
             copies.show(scene, path, exported.objects, exported.unlit)
             return []
         return objects.show(scene, path)
-    except RuntimeError:
+    except Exception:
         result.remove(scene)
         raise

@@ -23,8 +23,8 @@ class ShownMesh:
     matrix: Matrix  # its place, with Blender's axes
 
     def owner(self, objects: dict):
-        """Returns the scene's object that the node belongs to: the one above it that instances a collection, else the
-        one of its name. Panels of area lamps have no owner."""
+        """Returns the scene's object that the node belongs to: an instancer of a collection above it, else the object
+        with its name. Panels of area lamps have no owner."""
         above = [objects[name] for name in self.names if name in objects]
         return next((each for each in above if each.instance_type == "COLLECTION"), objects.get(self.names[-1]))
 

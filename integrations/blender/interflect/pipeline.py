@@ -72,8 +72,8 @@ class Bake:
         self.stage, self.fraction = stages[0].name, 0.0
         self.warnings: list[str] = []
         self.error: BakeError | None = None
-        self.is_cancelled = False
         self.preview: Path | None = None  # the file to be shown
+        self.is_cancelled = False
         self._process: subprocess.Popen | None = None
         self._lock = threading.Lock()  # guards the two members above
         self._thread = threading.Thread(target=self._run, args=(stages,), daemon=True)
@@ -86,6 +86,7 @@ class Bake:
         self._thread.join(seconds)
 
     def fail(self, error: str) -> None:
+        """Ends the command with an error from outside, such as the import of the preview."""
         self.error = BakeError(error)
         self.cancel()
 
@@ -103,7 +104,8 @@ class Bake:
                 self._run_stage(stage)
                 if self.is_cancelled:
                     return
-                self.preview = stage.shown or self.preview
+                if stage.shown:
+                    self.preview = stage.shown
         except BakeError as error:
             self.error = error
         except OSError as error:

@@ -14,6 +14,7 @@ UV_MAP = "Interflect"  # of objects that show light themselves
 RESULT = "interflect_result"  # marks data that a bake made
 HIDDEN = "interflect_hidden"  # marks objects that a bake hid: names of the view layers that showed them, one per line
 LIT = "interflect_lit"  # marks objects that show light themselves: their number of material slots before
+HAS_MAP = "interflect_has_map"  # marks objects that show light in an additional UV map
 ORIGINAL = "interflect_original"  # of a lit material: the material that it replaces
 WARNINGS = "interflect_warnings"  # of the scene's last bake: one per line
 
@@ -74,7 +75,7 @@ def put_on(lit, materials, coordinates) -> None:
         lit.data.materials.append(material)
     if coordinates is not None:
         layers = lit.data.uv_layers
-        active = layers.active_index
+        active, lit[HAS_MAP] = layers.active_index, True
         layers.new(name=UV_MAP, do_init=False).data.foreach_set("uv", coordinates.ravel())
         layers.active_index = max(active, 0)
 
@@ -90,7 +91,7 @@ def take_off(lit):
         lit.data.materials.pop()
     lit.data = lit.data  # counts the slots of the object again
     layers, coordinates = lit.data.uv_layers, None
-    if UV_MAP in layers:  # a linked duplicate has lost it with the first object
+    if lit.pop(HAS_MAP, False) and UV_MAP in layers:  # a linked duplicate has lost it with the first object
         coordinates = read(layers[UV_MAP].data, "uv", numpy.float32, 2)
         layers.remove(layers[UV_MAP])
     return materials, coordinates

@@ -72,9 +72,13 @@ def light_copy(original, image, uv_map: str):
 
 
 def _use_nodes(lit, original):
-    """Describes a material without nodes by its nodes."""
+    """Replaces the nodes of a material that does not use them by its colour, metal and roughness."""
     lit.use_nodes = True
-    inputs = next(node for node in lit.node_tree.nodes if node.type == "BSDF_PRINCIPLED").inputs
+    nodes = lit.node_tree.nodes
+    nodes.clear()
+    surface, output = nodes.new("ShaderNodeBsdfPrincipled"), nodes.new("ShaderNodeOutputMaterial")
+    lit.node_tree.links.new(surface.outputs[0], output.inputs["Surface"])
+    inputs = surface.inputs
     inputs["Base Color"].default_value = original.diffuse_color if original else (*[UNNAMED_REFLECTANCE] * 3, 1)
     if original:
         inputs["Metallic"].default_value, inputs["Roughness"].default_value = original.metallic, original.roughness
@@ -164,8 +168,7 @@ def _feed(links, value, socket):
 
 
 def _undo_exposure(material, notes):
-    """Undoes the exposure of vertex colours, which the importer shows as in the file, times the texture if there is
-    one."""
+    """Undoes the exposure of vertex colours, which the importer multiplies by the texture, if any."""
     nodes = material.node_tree.nodes
     emission = next(node for node in nodes if node.type == "EMISSION")
     emission.inputs["Strength"].default_value = 2 ** -notes["exposure"]

@@ -18,6 +18,7 @@ TOLERANCE = 1e-5  # between corners in the file and in the scene, relative to th
 MOST_UV_MAPS = 8  # of a mesh in Blender
 TO_Z_UP = numpy.array(Z_UP)[:3, :3].T  # for rows
 CHANGED = "These objects are not as they were exported, and stay unlit"
+NO_ROOM = f"These objects have {MOST_UV_MAPS} UV maps or one named '{result.UV_MAP}', and stay unlit"
 
 
 @dataclass
@@ -45,14 +46,15 @@ def show(scene, path: Path) -> list[str]:
             by_name = {name: images.load(name) for name in light.images.values()}
             if light.layout:
                 by_name = {name: layouts.cut(image, light.layout, light.target.name) for name, image in by_name.items()}
-            slots = [slot.material for slot in light.target.material_slots] or [None]
+            own = [slot.material for slot in light.target.material_slots] or [None]
+            lit = list(own)
             for used, name in light.images.items():
-                slot = min(used, len(slots) - 1)  # faces of a later slot show the last one
-                key = slots[slot], by_name[name], light.uv_map
+                slot = min(used, len(own) - 1)  # faces of a later slot show the last one
+                key = own[slot], by_name[name], light.uv_map
                 if key not in materials:
                     materials[key] = light_copy(*key)
-                slots[slot] = materials[key]
-            result.put_on(light.target, slots, light.coordinates)
+                lit[slot] = materials[key]
+            result.put_on(light.target, lit, light.coordinates)
         if plan.copies:
             collection = bpy.data.collections.new(result.COLLECTION)
             scene.collection.children.link(collection)
@@ -94,12 +96,14 @@ class Plan:
         evaluated = source.evaluated_get(self._depsgraph)
         mesh = evaluated.to_mesh(**self._whole)
         unfolded = _unfold(file, shown, lightmaps, mesh)
-        obstacle = _obstacle(source, owner)
+        obstacle, has_room = _obstacle(source, owner), True
         if unfolded and not unfolded["layout"]:
-            obstacle = obstacle or _obstacle_to_coordinates(source.data, mesh)
+            has_room = len(mesh.uv_layers) < MOST_UV_MAPS and result.UV_MAP not in mesh.uv_layers
+            if not obstacle and not numpy.array_equal(_faces(source.data), _faces(mesh)):
+                obstacle = "Modifiers change the faces"
         evaluated.to_mesh_clear()
-        if unfolded is None:
-            self.reasons[CHANGED].add(owner.name)
+        if not (unfolded and has_room):
+            self.reasons[NO_ROOM if unfolded else CHANGED].add(owner.name)
             return
         target = source
         if obstacle:
@@ -144,7 +148,7 @@ def _primitives(file, shown) -> list[dict]:
 
 
 def _unfold(file, shown, lightmaps, mesh) -> dict | None:
-    """Returns the members of Light except its target, if the mesh is that of the file. The exporter writes a
+    """Returns the members of Light except its target; None if the mesh differs from the file. The exporter writes a
     primitive for each material slot in use, and the triangles in the order of the mesh."""
     mesh.calc_loop_triangles()
     corners = read(mesh.loop_triangles, "loops", numpy.int32, 3)
@@ -185,15 +189,6 @@ def _obstacle(source, owner) -> str | None:
         return "Linked data cannot be changed"
     if source.data.users - source.data.use_fake_user > 1:
         return "Several objects have one mesh"
-    return None
-
-
-def _obstacle_to_coordinates(own, evaluated) -> str | None:
-    """Returns the reason for which a mesh cannot have the coordinates of its evaluated mesh, if any."""
-    if len(own.uv_layers) == MOST_UV_MAPS:
-        return "A mesh has no room for another UV map"
-    if not numpy.array_equal(_faces(own), _faces(evaluated)):
-        return "Modifiers change the faces"
     return None
 
 
