@@ -465,7 +465,7 @@ def state() -> list:
 
 
 def objects() -> dict:
-    """Light in the objects themselves, twice; undo, redo and *Clear*."""
+    """Light in the objects themselves, twice; undo, redo, and *Clear* after a lit material has been given to another object."""
     make_plates()
     before = state()
     bpy.ops.ed.undo_push(message="plates")
@@ -492,6 +492,7 @@ def objects() -> dict:
         data = camera.data
         bpy.data.objects.remove(camera)
         bpy.data.cameras.remove(data)
+    bpy.data.objects["row"].material_slots[0].material = bpy.data.objects["plain"].material_slots[0].material
     bpy.ops.interflect.clear()
     return {**found, "before": before, "after": state()}
 

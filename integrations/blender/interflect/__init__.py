@@ -196,7 +196,7 @@ class Bake(bpy.types.Operator):
         try:
             exchange.show_light(scene, file, self._exported, self._receivers)
             self._has_preview = True
-        except RuntimeError as error:  # reported by the importer
+        except Exception as error:  # an exception would end the operator, but not the bake
             Bake.running.fail(str(error))
 
     def _finish(self):
@@ -222,7 +222,7 @@ class Bake(bpy.types.Operator):
             return {"FINISHED"}
         except RuntimeError as error:  # reported by the importer
             self.report({"ERROR"}, str(error))
-            return {"CANCELLED"}
+            return self._unfinished()
         finally:
             self._end()
 

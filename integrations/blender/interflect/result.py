@@ -80,17 +80,29 @@ def put_on(lit, materials, coordinates) -> None:
         layers.active_index = max(active, 0)
 
 
+def _showing_light(scene) -> list:
+    """Returns the user's objects with light, also those with a lit material after a join or an assignment."""
+
+    def shows_light(each):
+        return LIT in each or any(slot.material and is_result(slot.material) for slot in each.material_slots)
+
+    def is_linked(each):
+        return each.library or (each.data and each.data.library)
+
+    return [each for each in scene.objects if shows_light(each) and not is_result(each) and not is_linked(each)]
+
+
 def take_off(lit):
     """Removes the additions of `put_on()`. Returns its arguments."""
     leave_edit_mode()
-    slots, materials = lit.pop(LIT), [slot.material for slot in lit.material_slots]
+    slots, materials = lit.pop(LIT, len(lit.data.materials)), [slot.material for slot in lit.material_slots]
     for slot in lit.material_slots:
         if slot.material and is_result(slot.material):
             slot.material = slot.material.get(ORIGINAL)
     while len(lit.data.materials) > slots and lit.data.materials[-1] is None:
         lit.data.materials.pop()
     lit.data = lit.data  # counts the slots of the object again
-    layers, coordinates = lit.data.uv_layers, None
+    layers, coordinates = getattr(lit.data, "uv_layers", ()), None  # none in a mesh that became a curve
     if lit.pop(HAS_MAP, False) and UV_MAP in layers:  # a linked duplicate has lost it with the first object
         coordinates = read(layers[UV_MAP].data, "uv", numpy.float32, 2)
         layers.remove(layers[UV_MAP])
@@ -100,7 +112,7 @@ def take_off(lit):
 @contextmanager
 def taken_off(scene):
     """Shows objects without their light in the `with` block."""
-    light = [(each, take_off(each)) for each in scene.objects if LIT in each]
+    light = [(each, take_off(each)) for each in _showing_light(scene)]
     try:
         yield
     finally:
@@ -120,7 +132,7 @@ def remove(scene) -> None:
             if kept.name not in scene.collection.children:
                 scene.collection.children.link(kept)
         bpy.data.collections.remove(collection)
-    for lit in [each for each in scene.objects if LIT in each]:
+    for lit in _showing_light(scene):
         take_off(lit)
     purge()
     members = [(layer, set(layer.objects)) for layer in scene.view_layers]

@@ -63,7 +63,7 @@ def light_copy(original, image, uv_map: str):
     @param original  The material, if the surface has one."""
     lit = original.copy() if original else bpy.data.materials.new("lit")
     if original:
-        lit.name, lit.use_fake_user, lit[result.ORIGINAL] = f"{original.name} lit", False, original
+        lit.name, lit[result.ORIGINAL] = f"{original.name} lit", original
     if not (original and original.use_nodes):
         _use_nodes(lit, original)
     _light_tree(lit.node_tree, image, uv_map)
