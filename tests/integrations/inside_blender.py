@@ -423,8 +423,9 @@ def make_plates() -> None:
     bpy.data.objects["plain"].data.polygons[1].material_index = 1
     bpy.data.objects["named"].data.uv_layers[0].name = result.UV_MAP
     disabled = bpy.data.objects["bent"].data.materials[0] = grey_material("disabled", 0.5)
-    disabled.node_tree.nodes.clear()
     disabled.use_nodes = False
+    if not disabled.use_nodes:  # Blender 5.0 always uses nodes
+        disabled.node_tree.nodes.clear()
     bpy.data.objects["second"].data = bpy.data.objects["first"].data
     bpy.data.meshes.remove(bpy.data.meshes["second"])
     bpy.data.objects["row"].modifiers.new("two", "ARRAY").relative_offset_displace = (0, 1.2, 0)
