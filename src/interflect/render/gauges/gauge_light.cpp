@@ -7,9 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "interflect/base/numbers/points.h"
 #include "interflect/base/sums/common_stop.h"
 #include "interflect/base/threads/monitor_section.h"
 #include "interflect/base/threads/shared_ranges.h"
+#include "interflect/render/paths/indirect_field.h"
 #include "interflect/render/paths/path_integrator.h"
 #include "interflect/render/pictures/pixel_statistics.h"
 
@@ -54,11 +56,12 @@ class GaugeTile {
     /// Traces until each half of gauge i has wanted[i] samples.
     void trace_more(const std::vector<std::uint32_t>& wanted) {
         std::vector<SampleBatch> batches;
-        for (std::size_t i = 0; i < pixels_.size(); ++i)
-            if (const std::uint32_t present = pixels_[i].samples_of_half(); wanted[i] > present)
-                batches.push_back({.pixel = static_cast<std::uint32_t>(first_ + i),
-                                   .first_index = present,
-                                   .half_size = wanted[i] - present});
+        constexpr std::uint32_t largest = PointBlock::capacity;  // samples of each half in a batch
+        for (std::uint32_t i = 0; i < pixels_.size(); ++i)
+            for (std::uint32_t done = pixels_[i].samples_of_half(); done < wanted[i]; done += largest)
+                batches.push_back({.pixel = static_cast<std::uint32_t>(first_) + i,
+                                   .first_index = done,
+                                   .half_size = std::min(largest, wanted[i] - done)});
         integrator_.trace(batches);
         rays_ += integrator_.counts().rays;
         for (const SampleBatch& b : batches) pixels_[b.pixel - first_].add(b, ErrorSource::halves);
@@ -122,6 +125,17 @@ std::vector<GaugeLight> trace_all_gauges(const PathPlan& plan, const Monitor& mo
     return irradiance;
 }
 
+/// Moves the indirect light that a gauge has gathered to its sampled light, whose noise is filtered.
+void move_to_sampled(const IndirectField::OwnLight& own, GaugeLight& light) {
+    light.direct.irradiance += own.irradiance;
+    light.direct.squared_error += own.squared_error;
+    for (std::size_t h = 0; h < 2; ++h) {
+        light.halves[h].irradiance += own.halves[h];
+        light.halves[h].squared_error += 2 * own.squared_error;
+    }
+    light.indirect = Rgb(0);
+}
+
 PathStart start_at(std::span<const Gauge> gauges) {
     PathStart start;
     start.gauges = gauges;
@@ -138,7 +152,12 @@ std::vector<GaugeLight> hybrid_irradiance(const TracedScene& scene, const KnownI
     constexpr double share_of_records = 0.6;  // rough share of the time, for progress reports
     const PreparedLight prepared(plan, &known, monitor_section(monitor, 0, share_of_records));
     const PathPlan hybrid = prepared.plan();
-    return trace_all_gauges(hybrid, monitor_section(monitor, share_of_records, 1, prepared.rays()));
+    std::vector<GaugeLight> light =
+        trace_all_gauges(hybrid, monitor_section(monitor, share_of_records, 1, prepared.rays()));
+    for (std::uint32_t i = 0; i < light.size(); ++i)
+        if (const std::uint32_t own = hybrid.hybrid->field->own_record(i); own != none)
+            move_to_sampled(hybrid.hybrid->field->own_light(own), light[i]);
+    return light;
 }
 
 std::vector<SampledIrradiance> direct_irradiance(const TracedScene& scene, std::span<const Gauge> gauges,

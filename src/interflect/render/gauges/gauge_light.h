@@ -17,7 +17,7 @@ struct SampledIrradiance {
     float squared_error = 0;  ///< Estimated squared error of the mean of the channels.
 };
 struct GaugeLight {
-    SampledIrradiance direct;
+    SampledIrradiance direct;  ///< With the indirect light that a gauge gathers itself, whose noise is filtered too.
     std::array<SampledIrradiance, 2> halves;  ///< `direct` from the halves of the samples (SampleBatch).
     Rgb indirect;  ///< Interpolated between records, or gathered if no record is near [as H].
 

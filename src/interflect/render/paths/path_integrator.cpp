@@ -264,7 +264,8 @@ void PathIntegrator::illuminate_vertices() {
 }
 
 bool PathIntegrator::light_first_point(Path& path) {
-    const RecordLookups::Lookup lookup = record_lookups_.add_indirect(path, light_[path.half_batch]);
+    const RecordLookups::Lookup lookup =
+        record_lookups_.add_indirect(path, pixels_[path.half_batch / 2], light_[path.half_batch]);
     if (!lookup.is_found) return false;
     path.sampling = sampling_with_record(lookup.guide);
     // Compute unoccluded light; shadow rays estimate the occlusion

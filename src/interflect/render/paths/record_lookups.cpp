@@ -11,7 +11,7 @@
 
 namespace interflect::detail {
 
-const RecordLookups::Group& RecordLookups::group_of(const Path& path) {
+const RecordLookups::Group& RecordLookups::group_of(const Path& path, std::uint32_t pixel) {
     constexpr float same_cosine = 0.999f;
     const std::uint32_t batch = path.half_batch / 2;
     for (std::size_t i = groups_.size(); i > 0 && groups_[i - 1].batch == batch; --i)
@@ -25,19 +25,27 @@ const RecordLookups::Group& RecordLookups::group_of(const Path& path) {
         group.radius = std::numeric_limits<float>::infinity();
         return group;
     }
+    const SkyGuide* const guide = plan_.hybrid->guide;
+    if (const std::uint32_t own = field->own_record(pixel); own != none) {
+        const IndirectField::OwnLight light = field->own_light(own);
+        group.lookup.is_found = true;
+        group.irradiance = light.irradiance;
+        group.radius = std::numeric_limits<float>::infinity();
+        if (guide && guide->sees_sky(own)) group.lookup.guide = own;
+        return group;
+    }
     const auto found = field->at(path.lookup_position, path.normal, path.patch);
     if (!found) return group;
     group.lookup.is_found = true;
     group.irradiance = found->irradiance;
     group.error = found->error;
     group.radius = found->reach / 2;
-    const SkyGuide* const guide = plan_.hybrid->guide;
     if (guide && guide->sees_sky(found->record)) group.lookup.guide = found->record;
     return group;
 }
 
-RecordLookups::Lookup RecordLookups::add_indirect(const Path& path, PathLight& light) {
-    const Group& group = group_of(path);
+RecordLookups::Lookup RecordLookups::add_indirect(const Path& path, std::uint32_t pixel, PathLight& light) {
+    const Group& group = group_of(path, pixel);
     const Rgb per_irradiance = path.throughput / std::numbers::pi_v<float>;
     light.indirect += RgbD(per_irradiance * group.irradiance);
     const double share = mean_channel(RgbD(per_irradiance));

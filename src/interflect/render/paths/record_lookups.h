@@ -27,7 +27,8 @@ class RecordLookups {
     };
     /// Adds the indirect light of the path's vertex to `light`. Near points of a batch with the same patch and normal
     /// share the lookup at the first of them, which may belong to the other half.
-    Lookup add_indirect(const Path& path, PathLight& light);
+    /// @param pixel  Of the path: its gauge in bakes.
+    Lookup add_indirect(const Path& path, std::uint32_t pixel, PathLight& light);
 
   private:
     struct Group {
@@ -38,7 +39,7 @@ class RecordLookups {
         Rgb irradiance{0, 0, 0};
         float error = 0;  // standard error, mean channel
     };
-    const Group& group_of(const Path& path);
+    const Group& group_of(const Path& path, std::uint32_t pixel);
 
     const PathPlan& plan_;
     std::vector<Group> groups_;

@@ -21,6 +21,7 @@ struct Gauge {
     PatchIndex patch{};                    // patch below the gauge; `none` in space
     V3f side_u{0, 0, 0}, side_v{0, 0, 0};  // parallelogram of ray starts around `position` on the patch [m]
     float inset = 0;                       // least distance of ray starts from the patch's border [m]
+    bool is_filtered = false;              // whether noise of its light is filtered later
 
     float spacing() const { return std::max(side_u.length(), side_v.length()); }
     /// Returns a point of the parallelogram on the patch [m]. If the point is outside the patch, its offset from
