@@ -121,8 +121,7 @@ class LightmapTexels {
     /// Writes the light of all texels to images.
     void evaluate(const Scene& scene, const BakedLight& light, const Monitor& monitor,
                   std::vector<Image>& images) const {
-        const float spacing = 1 / options_.texels_per_metre;  // [m]
-        const std::vector<Rgb> irradiance = light.irradiance(points_, grids_, spacing, monitor);
+        const std::vector<Rgb> irradiance = light.irradiance(points_, grids_, monitor);
         for (const auto& [position, point] : texels_)
             images[position.page].at(position.column, position.row) =
                 texel_value(options_.content, scene, points_[point], irradiance[point]);

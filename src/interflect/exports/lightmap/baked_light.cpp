@@ -16,8 +16,8 @@ namespace interflect::detail {
 
 namespace {
 
-/// Minimum distance of ray starts from the border of a patch, relative to the spacing of points. Otherwise rays at the
-/// foot of a wall would start in its plane.
+/// Minimum distance of ray starts from the border of a patch, relative to the shorter side of the point's area.
+/// Otherwise rays at the foot of a wall would start in its plane.
 constexpr float inset = 0.05f;
 
 SampledLight no_light(int width, int height) {
@@ -137,9 +137,9 @@ BakedLight::BakedLight(const Scene& scene, const Solution& solution, const BakeO
 }
 
 std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, std::span<const PointGrid> grids,
-                                        float spacing, const Monitor& monitor) const {
+                                        const Monitor& monitor) const {
     if (options_.shading == Shading::hybrid) {
-        const std::vector<Gauge> places = gauges(points, spacing);
+        const std::vector<Gauge> places = gauges(points, /*are_filtered=*/!grids.empty());
         const PictureOptions path = path_options();
         give_order(monitor.ranks, {.kind = LightOrder::Kind::gauges, .options = path}, {{}, 0, places});
         const std::vector<GaugeLight> light = hybrid_irradiance(*traced_, known_, places, path, monitor);
@@ -149,7 +149,7 @@ std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, std:
         if (options_.denoiser && !grids.empty()) filter(grids, places, light, *options_.denoiser, values);
         return values;
     }
-    if (options_.shading == Shading::gather) return gathered(points, spacing, monitor);
+    if (options_.shading == Shading::gather) return gathered(points, monitor);
     std::vector<Rgb> values(points.size());
     constexpr std::size_t points_per_task = 1 << 12;
     parallel_for_ranges(points.size(), points_per_task, [&](std::size_t begin, std::size_t end) {
@@ -158,11 +158,11 @@ std::vector<Rgb> BakedLight::irradiance(std::span<const BakedPoint> points, std:
     return values;
 }
 
-std::vector<SampledIrradiance> BakedLight::direct(std::span<const BakedPoint> points, float spacing, int max_samples,
+std::vector<SampledIrradiance> BakedLight::direct(std::span<const BakedPoint> points, int max_samples,
                                                   const Monitor& monitor) const {
     PictureOptions options = path_options();
     options.samples = std::min(options.samples, max_samples);
-    const std::vector<Gauge> places = gauges(points, spacing);
+    const std::vector<Gauge> places = gauges(points);
     give_order(monitor.ranks, {.kind = LightOrder::Kind::direct_gauges, .options = options}, {{}, 0, places});
     return direct_irradiance(*traced_, places, options, monitor);
 }
@@ -176,7 +176,7 @@ PictureOptions BakedLight::path_options() const {
     return path;
 }
 
-std::vector<Gauge> BakedLight::gauges(std::span<const BakedPoint> points, float spacing) const {
+std::vector<Gauge> BakedLight::gauges(std::span<const BakedPoint> points, bool are_filtered) const {
     std::vector<Gauge> gauges;
     gauges.reserve(points.size());
     for (const BakedPoint& point : points) {
@@ -185,19 +185,20 @@ std::vector<Gauge> BakedLight::gauges(std::span<const BakedPoint> points, float 
             return geometry.shape().edge_u * p.u + geometry.shape().edge_v * p.v;
         };
         Gauge gauge;
-        gauge.position = geometry.point(geometry.inset(point.at, inset * spacing));
+        gauge.position = geometry.point(point.at);
         gauge.normal = vertices_.normals().at(geometry, point.patch, point.at);
         gauge.patch = point.patch;
         gauge.side_u = side(point.sides[0]);
         gauge.side_v = side(point.sides[1]);
-        gauge.inset = inset * spacing;
+        gauge.is_filtered = are_filtered;
+        gauge.inset = inset * std::min(gauge.side_u.length(), gauge.side_v.length());
         gauges.push_back(gauge);
     }
     return gauges;
 }
 
-std::vector<Rgb> BakedLight::gathered(std::span<const BakedPoint> points, float spacing, const Monitor& monitor) const {
-    const std::vector<Gauge> places = gauges(points, spacing);
+std::vector<Rgb> BakedLight::gathered(std::span<const BakedPoint> points, const Monitor& monitor) const {
+    const std::vector<Gauge> places = gauges(points);
     std::vector<MeasuringPoint> measuring;
     measuring.reserve(points.size());
     for (const BakedPoint& point : points) {

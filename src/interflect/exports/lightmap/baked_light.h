@@ -43,21 +43,20 @@ class BakedLight {
     BakedLight(const Scene& scene, const Solution& solution, const BakeOptions& options,
                const DirectSampling& sampling);
 
-    /// @param grids    Grids in which the noise of hybrid shading is filtered.
-    /// @param spacing  Distance between the points; rays start a twentieth of it inside their patch [m].
-    /// @return         One value per point [unit of H]. @throws Stopped
-    std::vector<Rgb> irradiance(std::span<const BakedPoint> points, std::span<const PointGrid> grids, float spacing,
+    /// @param grids  Grids in which the noise of hybrid shading is filtered; they contain all points or none.
+    /// @return       One value per point [unit of H]. @throws Stopped
+    std::vector<Rgb> irradiance(std::span<const BakedPoint> points, std::span<const PointGrid> grids,
                                 const Monitor& monitor) const;
     /// Returns the direct light of hybrid shading. Requires calls_direct and a shading other than smooth.
-    std::vector<SampledIrradiance> direct(std::span<const BakedPoint> points, float spacing, int max_samples,
+    std::vector<SampledIrradiance> direct(std::span<const BakedPoint> points, int max_samples,
                                           const Monitor& monitor) const;
     /// Returns the interpolated irradiance of the solution (SmoothField).
     Rgb interpolated(const BakedPoint& point) const { return smooth_.at(point.patch, point.at); }
 
   private:
     PictureOptions path_options() const;
-    std::vector<Gauge> gauges(std::span<const BakedPoint> points, float spacing) const;
-    std::vector<Rgb> gathered(std::span<const BakedPoint> points, float spacing, const Monitor& monitor) const;
+    std::vector<Gauge> gauges(std::span<const BakedPoint> points, bool are_filtered = false) const;
+    std::vector<Rgb> gathered(std::span<const BakedPoint> points, const Monitor& monitor) const;
 
     const Scene& scene_;
     const Solution& solution_;

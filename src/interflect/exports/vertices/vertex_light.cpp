@@ -199,7 +199,7 @@ class Division {
             for (const Parameters& corner : corners_of(is_triangle(e))) add(corner);
             for (const Middle& middle : middles_of(is_triangle(e))) add(middle.at);
         }
-        direct_ = light_.direct(points, spacing_of(options_), max_samples, monitor);
+        direct_ = light_.direct(points, max_samples, monitor);
     }
 
     /// Returns direct light at a point of an element; the emission of textures counts as direct light.
@@ -285,8 +285,8 @@ VertexLight make_vertex_light(const Scene& scene, const Solution& solution, cons
     const auto forest = division.run(monitor_section(options.monitor, 0, share_of_division));
     ElementVertices vertices(scene, *forest);
     const VertexPoints points(*forest, vertices, shown, options.vertices);
-    const std::vector<Rgb> irradiance = light.irradiance(points.points(), {}, spacing_of(options.vertices),
-                                                         monitor_section(options.monitor, share_of_division, 1));
+    const std::vector<Rgb> irradiance =
+        light.irradiance(points.points(), {}, monitor_section(options.monitor, share_of_division, 1));
     std::vector<std::optional<Rgb>> at_points(vertices.count());
     for (std::uint32_t v = 0; v < vertices.count(); ++v)
         if (const std::uint32_t i = points.number(v); i != none) at_points[v] = irradiance[i];

@@ -50,7 +50,8 @@ std::vector<SurfacePoint> points_seen_by(const PathPlan& plan, PathRays rays) {
 std::vector<SurfacePoint> first_points(const PathPlan& plan, const StopRequest& stop) {
     std::vector<SurfacePoint> points;
     for (const Gauge& g : plan.start.gauges) {
-        const V3f start = g.patch == none ? g.position : plan.scene.lifted(g.patch, g.position);
+        const V3f middle = g.patch == none ? g.position : g.point_on(plan.scene.geometry[g.patch], 0.5f, 0.5f);
+        const V3f start = g.patch == none ? middle : plan.scene.lifted(g.patch, middle);
         points.push_back({start + g.normal * g.offset, g.normal, g.patch, g.spacing()});
     }
     if (!plan.start.camera) return points;
