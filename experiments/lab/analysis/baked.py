@@ -61,20 +61,20 @@ class Baked:
 
 def read_baked(path: Path) -> Baked:
     """Reads a .glb file with irradiance in its vertices or lightmaps."""
-    document, binary = _chunks(path)
+    document, binary = chunks(path)
     parts = [p for mesh in document["meshes"] for p in mesh["primitives"]]
-    indices = [_array(document, binary, p["indices"]).reshape(-1, 3) for p in parts]
+    indices = [array(document, binary, p["indices"]).reshape(-1, 3) for p in parts]
 
     def corners_of(attribute: str) -> np.ndarray:
-        arrays = (_array(document, binary, p["attributes"][attribute])[i] for p, i in zip(parts, indices))
+        arrays = (array(document, binary, p["attributes"][attribute])[i] for p, i in zip(parts, indices))
         return np.concatenate(list(arrays)).astype(float)
 
     positions = corners_of("POSITION")
     if "_IRRADIANCE" in parts[0]["attributes"]:
         illuminance = corners_of("_IRRADIANCE") @ LUMINANCE
         return Baked(positions, lambda triangle, weights: (illuminance[triangle] * weights).sum(axis=1))
-    maps = [read_exr(path.parent / name) @ LUMINANCE for name in _lightmaps(document)]
-    pages = np.concatenate([np.full(len(i), _page(document, p)) for p, i in zip(parts, indices)])
+    maps = [read_exr(path.parent / name) @ LUMINANCE for name in lightmaps(document)]
+    pages = np.concatenate([np.full(len(i), page(document, p)) for p, i in zip(parts, indices)])
     coordinates = corners_of("TEXCOORD_1")
 
     def light(triangle: np.ndarray, weights: np.ndarray) -> np.ndarray:
@@ -96,24 +96,24 @@ def bilinear(image: np.ndarray, place: np.ndarray) -> float:
     return float(rows[0] + (x - left) * (rows[-1] - rows[0]))
 
 
-def _page(document: dict, primitive: dict) -> int:
+def page(document: dict, primitive: dict) -> int:
     """Returns the index of a primitive's lightmap among the unclamped images, which have the names of the textures."""
     texture = document["materials"][primitive["material"]]["extensions"]["MOZ_lightmap"]["index"]
     name = document["images"][document["textures"][texture]["source"]]["name"]
-    return [Path(file).stem for file in _lightmaps(document)].index(name)
+    return [Path(file).stem for file in lightmaps(document)].index(name)
 
 
-def _lightmaps(document: dict) -> list[str]:
+def lightmaps(document: dict) -> list[str]:
     return document["asset"]["extras"]["interflect"]["lightmap"]["unclamped"]
 
 
-def _chunks(path: Path) -> tuple[dict, bytes]:
+def chunks(path: Path) -> tuple[dict, bytes]:
     data = path.read_bytes()
     (length,) = struct.unpack_from("<I", data, 12)
     return json.loads(data[20 : 20 + length]), data[20 + length + 8 :]
 
 
-def _array(document: dict, binary: bytes, index: int) -> np.ndarray:
+def array(document: dict, binary: bytes, index: int) -> np.ndarray:
     accessor = document["accessors"][index]
     view = document["bufferViews"][accessor["bufferView"]]  # the command writes no interleaved attributes
     begin = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
