@@ -20,11 +20,11 @@ from shadings.scenes import KINDS, make_scene
 WORK = program.ROOT / "out/experiments/cache/texels"
 TABLE = program.ROOT / "experiments/results/texels.csv"
 PEERS = program.ROOT / "build/peers/bin/python"
-SCRIPT = program.ROOT / "experiments/lab/mitsuba_irradiance.py"
+SCRIPT = Path(__file__).with_name("mitsuba_irradiance.py")
 SCENES = ["office", "room", "crate@texels", "mixed-sizes@texels"]
 TEXELS, SAMPLES = 3000, 16384
-POINTS = 16  # of a texel
-SUBDIVISION = 8  # a texel is a square of so many candidates for points along each side
+SUBDIVISION = 8  # a texel is a square of so many cells along each side, with a point in each
+POINTS = SUBDIVISION**2  # of a texel; repeated if only some cells are on the surface
 LEAST_COVERED = 0.2  # share of a texel on the surface; a corner of a chart has a quarter
 HIDDEN = 0.2  # share of rays that hit backs of surfaces, from which on a point is inside a solid
 
@@ -50,7 +50,7 @@ def measure(names: list[str], command: program.Program) -> None:
 def measure_scene(name: str, command: program.Program, folder: Path) -> dict:
     scene = scene_file(name, folder)
     program.run(command, ["solve", str(scene), "-o", str(folder / "out.h5")])
-    baking = program.run(command, ["export", str(folder / "out.h5"), "-o", str(folder / "lit.glb"), "--lightmap"])
+    program.run(command, ["export", str(folder / "out.h5"), "-o", str(folder / "lit.glb"), "--lightmap"])
     program.run(command, ["export", str(folder / "out.h5"), "-o", str(folder / "scene.xml")])
     texels = choose_texels(folder / "lit.glb", is_turned=scene.suffix != ".glb")
     reference, backs = path_traced(folder, texels)
@@ -58,7 +58,7 @@ def measure_scene(name: str, command: program.Program, folder: Path) -> dict:
     visible = is_visible.sum(axis=1)
     kept = visible > LEAST_COVERED * POINTS
     mean = (reference * is_visible).sum(axis=2) / np.maximum(visible, 1)
-    return {"texels": int(kept.sum()), **errors(texels.light[kept], mean[:, kept]), "seconds": round(baking.seconds, 1)}
+    return {"texels": int(kept.sum()), **errors(texels.light[kept], mean[:, kept])}
 
 
 def scene_file(name: str, folder: Path) -> Path:
@@ -82,13 +82,13 @@ def choose_texels(path: Path, is_turned: bool) -> Texels:
     for corners, normals, places, page in triangles(document, binary, is_turned):
         image = maps[page]
         pixels = places * (image.shape[1], image.shape[0])
-        for row, column, point, normal in candidates(corners, normals, pixels, chosen[page]):
+        for row, column, point, normal in candidates(corners, normals, pixels, chosen[page], random):
             found.setdefault((page, row, column), []).append((point, normal))
     least = LEAST_COVERED * SUBDIVISION**2
     keys = [key for key, points in found.items() if len(points) >= least]
     random.shuffle(keys)
     keys = keys[:TEXELS]
-    drawn = [[found[key][k] for k in random.choice(len(found[key]), POINTS)] for key in keys]
+    drawn = [[found[key][k] for k in np.resize(random.permutation(len(found[key])), POINTS)] for key in keys]
     light = np.array([maps[page][row, column] for page, row, column in keys])
     points = np.array([[point for point, _ in some] for some in drawn])
     normals = np.array([[normal for _, normal in some] for some in drawn])
@@ -155,7 +155,7 @@ def matrix_of(node: dict) -> np.ndarray:
     return matrix
 
 
-def candidates(corners: np.ndarray, normals: np.ndarray, pixels: np.ndarray, chosen: np.ndarray):
+def candidates(corners: np.ndarray, normals: np.ndarray, pixels: np.ndarray, chosen: np.ndarray, random):
     """Yields row, column, point and normal of the candidates of chosen texels that are on a triangle.
     @param pixels  Corners in the image [texels]."""
     low, high = np.floor(pixels.min(axis=0)).astype(int), np.ceil(pixels.max(axis=0)).astype(int)
@@ -167,8 +167,8 @@ def candidates(corners: np.ndarray, normals: np.ndarray, pixels: np.ndarray, cho
     determinant = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
     if determinant == 0:
         return
-    offsets = (np.arange(SUBDIVISION) + 0.5) / SUBDIVISION
-    v, u = (side.ravel() for side in np.meshgrid(offsets, offsets, indexing="ij"))
+    v, u = (side.ravel() + random.random((len(rows), POINTS)) for side in np.indices((SUBDIVISION, SUBDIVISION)))
+    u, v = u / SUBDIVISION, v / SUBDIVISION
     x, y = columns[:, None] + low[0] + u, rows[:, None] + low[1] + v
     second = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / determinant
     third = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / determinant
@@ -215,8 +215,8 @@ def errors(light: np.ndarray, reference: np.ndarray) -> dict:
 def draw() -> None:
     rows = results.read_csv(TABLE)
     percents = ("mean", "rms", "trimmed", "worst_percent")
-    lines = [[row["scene"], *(f"{row[name]:.2%}" for name in percents), f"{row['seconds']:.0f} s"] for row in rows]
-    header = ["scene", "mean", "RMS", "RMS without the worst 1%", "99th percentile", "time of the bake"]
+    lines = [[row["scene"], *(f"{row[name]:.2%}" for name in percents)] for row in rows]
+    header = ["scene", "mean", "RMS", "RMS without the worst 1%", "99th percentile"]
     results.write_table(program.ROOT / "docs/figures/texels.md", header, lines)
 
 
