@@ -32,7 +32,7 @@ std::string lit(const std::string& bytes, const Scene& scene) {
     options.lightmap->max_bytes = 1 << 26;
     SourceGltf source(path, bytes, limits());
     GltfDocument document = source.document();
-    add_lightmap(document, source, path, scene, lightmap_testing::uniform(scene, 1), options);
+    add_lightmap(document, source, path, scene, lightmap_testing::uniform(scene, 1), options, /*earlier=*/nullptr);
     return document.glb();
 }
 

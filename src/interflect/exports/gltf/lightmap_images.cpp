@@ -119,7 +119,7 @@ Json description_of(const BakedImages& baked, const LightmapImages& encoded) {
         lightmap["covered"] = baked.covered;
     }
     lightmap["used"] = baked.used;
-    lightmap["layout"] = baked.layout;
+    lightmap["layout"] = Json::parse(baked.layout);
     return {{"exposure", encoding.exposure}, {"lightmap", std::move(lightmap)}};
 }
 

@@ -270,7 +270,8 @@ BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pa
     texel_counts.images = texels_of_images(sizes);
     require_lightmap_memory(texel_counts, options, solution.group_names.size());
     BakedImages baked;
-    baked.layout = layout_of(charts, scene, lightmap);
+    const Json layout = layout_of(charts, scene, lightmap);
+    baked.layout = layout.dump();
     baked.densities = densities_of(charts, scene);
     if (options.warnings) warn_of_reduced_density(baked.densities, *options.warnings);
     const double all_texels = std::max(1.0, texel_counts.images);  // no division by 0 without charts
@@ -282,7 +283,7 @@ BakedImages bake_charts(std::vector<LightmapChart>& charts, const PackCharts& pa
     }
     if (lightmap.groups) baked.groups.assign(solution.group_names.size(), baked.images);
     if (earlier) {
-        require_same_layout(*earlier, baked.layout);
+        require_same_layout(*earlier, layout);
         read_images(*earlier, baked.images, baked.groups);
     }
 

@@ -2,12 +2,12 @@
 
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "interflect/export.h"
 #include "interflect/exports/lightmap/earlier_lightmap.h"
 #include "interflect/exports/lightmap/texels.h"
-#include "interflect/exports/records/json_text.h"
 #include "interflect/image.h"
 
 namespace interflect::detail {
@@ -16,7 +16,7 @@ namespace interflect::detail {
 struct BakedImages {
     std::vector<Image> images;               ///< Irradiance [lm/m^2] or radiance [cd/m^2]; 0 between charts.
     std::vector<std::vector<Image>> groups;  ///< Images of each light group, [group][image]; or empty.
-    Json layout;                             ///< Description of the layout (layout_of()).
+    std::string layout = "{}";               ///< Description of the layout (layout_of()), as JSON.
     std::vector<ObjectDensity> densities;    ///< Result of densities_of().
     double used = 0;                         ///< Fraction of the texels of all images that are in charts and gutters.
     double covered = 0;                      ///< Fraction of the texels of all images whose centres are on patches.

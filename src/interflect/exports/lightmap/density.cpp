@@ -19,6 +19,7 @@ std::vector<ObjectDensity> densities_of(std::span<const LightmapChart> charts, c
         if (obtained / requested < object.obtained / object.requested) object = {object.object, requested, obtained};
     }
     std::vector<ObjectDensity> densities;
+    densities.reserve(lowest.size());
     for (auto& [object, density] : lowest) densities.push_back(std::move(density));
     return densities;
 }
